@@ -96,6 +96,9 @@ std::vector<BitScene> bit_scenes(const Stepping& stepping) {
   if (!gives_force(law)) return scenes;
   const GrainBond dashpots{.normal_dashpot = 3, .tangential_dashpot = 2, .rolling_dashpot = 0.1};
   const GrainBond springs{.normal_dashpot = 1, .normal_spring = 300, .tangential_spring = 150, .bending_spring = 12};
+  scenes.push_back({"rolling and cohesion", with_effects(two_kinds(box))});
+  scenes.push_back({"cohesion of bonded discs", with_effects(tied(busy_box(law, 8, 4, 31), springs, 1, 1, 4, 30))});
+  scenes.push_back({"rolling and cohesion of shapes", with_effects(mixed_box(law, 5, 5, 85))});
   scenes.push_back({"shapes", mixed_box(law, 5, 5, 85)});
   scenes.push_back({"shapes without friction", without_friction(mixed_box(law, 5, 5, 73))});
   scenes.push_back({"needles", flying_needles(24, 33), 1e-3, 1200});
@@ -107,10 +110,12 @@ std::vector<BitScene> bit_scenes(const Stepping& stepping) {
   shapes.pairs[0].stiffness *= 8;  // small discs of clumps are not pressed into others
   scenes.push_back({"cell", busy_cell(law, 5, 4, 6, 4), 0.004, 700});
   scenes.push_back({"cell of shapes", shapes, 0.001, 900});
+  scenes.push_back({"cohesion in a cell", with_effects(shapes, 2), 0.001, 900});
   scenes.push_back({"cell of bonds that break", bonded, 0.002, 900});
   if (stepping.integrator != GrainIntegrator::velocity_verlet) return scenes;
   scenes.push_back({"sheared cell", sheared(busy_cell(law, 6, 5, 29), 3), 0.002, 1100});
   scenes.push_back({"sheared cell of shapes", sheared(shapes, 3), 0.001, 900});
+  scenes.push_back({"rolling in a sheared cell", with_effects(sheared(busy_cell(law, 6, 5, 29), 3)), 0.002, 1100});
   bonded.cell->rate_xy = {.value = 2};
   for (std::vector<double>* strengths : {&bonded.strengths->tension, &bonded.strengths->shear})
     for (double& strength : *strengths) strength *= 3;

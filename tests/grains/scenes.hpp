@@ -201,4 +201,16 @@ inline GrainScene busy_box(NormalLaw law, int columns, int rows, std::uint64_t s
   return scene_of(std::move(grains), std::move(walls), pair, {0, -1});
 }
 
+/// With rolling resistance and cohesion. \param attraction N
+inline GrainScene with_effects(GrainScene scene, double attraction = 1) {
+  for (PairProperties& pair : scene.pairs) {
+    pair.rolling_friction = 0.3;
+    pair.rolling_ratio = 0.4;
+    pair.rolling_damping = 0.2;
+    pair.cohesion = attraction;
+    pair.cohesion_range = 0.03;
+  }
+  return scene;
+}
+
 }  // namespace equidem::test

@@ -197,6 +197,19 @@ class Models(ExportTest):
         script = (self.exported(graded, "lammps", "--overwrite") / "in.equidem").read_text()
         self.assertIn("pair_style granular", script)
 
+    def test_rolling_resistance_is_the_spring_dashpot_and_slider_of_lammps_at_the_reduced_radius(self):
+        """The force at R, k = rolling_ratio kN, limited by mu_r N; the dashpot 2 zeta sqrt(k m') with 1/m' = R²(1/I_i + 1/I_j): of two
+        equal discs, R = r/2 and I = m r²/2, m' is the mass of one; at a wall, R = r, half of it."""
+        case = self.grains(collisions="rolling_friction = 0.2\nrolling_ratio = 0.5\nrolling_damping = 0.1")
+        script = (self.exported(case, "lammps") / "in.equidem").read_text()
+        mass = 2500 * math.pi * 0.01**2
+        pair, wall = (re.search(pattern + r".* rolling sds (\S+) (\S+) (\S+) ", script).groups() for pattern in ("pair_coeff", "wall/gran/region"))
+        for given, share in ((pair, 1), (wall, 0.5)):
+            self.assertEqual((float(given[0]), float(given[2])), (0.5e6, 0.2))
+            self.assertAlmostEqual(float(given[1]) / (2 * 0.1 * math.sqrt(0.5e6 * share * mass)), 1, delta=1e-12)
+        smooth = (self.exported(self.grains(), "lammps", "--overwrite") / "in.equidem").read_text()
+        self.assertNotIn("rolling", smooth)
+
 
 class Refusals(ExportTest):
     """What an engine does not carry is named, with what to do."""
@@ -308,6 +321,11 @@ force = [0.0, 1.0]
         self.check_refused(self.grains(restitution=0.5, radius=0.008), ["yade"], "restitution below 1", "of bodies of unequal masses", "lammps")
         self.check_refused(self.grains(restitution=0.5, collisions="[collisions.walls]\nrestitution = 0.9"), ["yade"],
                            "pair to pair")
+
+    def test_rolling_and_cohesion(self):
+        self.check_refused(self.grains(collisions="rolling_friction = 0.2"), ["yade"], "rolling resistance, here with the coefficient 0.2", "lammps")
+        self.check_refused(self.grains(radius=0.008, collisions="rolling_friction = 0.2\nrolling_damping = 0.3"), ENGINES, "rolling")
+        self.check_refused(self.grains(collisions="cohesion = 3.0\ncohesion_range = 1e-3"), ENGINES, "cohesion of 3 within 0.001 m")
 
     def test_friction_is_exported_only_where_its_levers_are_accepted(self):
         case = self.grains(collisions="friction = 0.3")

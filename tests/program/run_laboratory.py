@@ -130,6 +130,18 @@ class Heaps(Laboratory):
         with self.subTest(slopes=slopes):
             self.assertGreater(slopes[1]["angle"] - slopes[0]["angle"], 3 * math.hypot(slopes[0]["error"], slopes[1]["error"]))
 
+    def test_a_heap_whose_grains_resist_rolling_is_steeper(self):
+        """Rolling friction 0, 0.1 and 0.4 of discs with friction 0.5: each slope steeper than the one before by more than the errors of
+        both lines."""
+        slopes = []
+        for rolling in (0.0, 0.1, 0.4):
+            damped = ("--set", "collisions.rolling_damping=0.3") if rolling > 0 else ()
+            _, out = self.run_test("repose", "--set", f"collisions.rolling_friction={rolling}", *damped, "--set", "stage.1.duration=1.0")
+            slopes.append(readings.slope(out))
+        with self.subTest(slopes=slopes):
+            for less, more in zip(slopes, slopes[1:]):
+                self.assertGreater(more["angle"] - less["angle"], math.hypot(less["error"], more["error"]))
+
     def test_a_slope_of_a_known_angle_is_read(self):
         with open(self.folder / "grains.csv", "w", encoding="utf-8") as file:
             file.write("x_m,y_m,radius_m\n")

@@ -51,8 +51,11 @@ GrainSimulation::Implementation::Implementation(const GrainScene& scene, const G
   order_by_place(system, scene, order);
   set_cell(system);
   tie_bonds(system, scene);
-  system.friction =
-      std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
+  const auto any_pair = [&](auto has) { return std::ranges::any_of(scene.pairs, has); };
+  system.rolling = any_pair([](const PairProperties& pair) { return pair.rolling_friction > 0; });
+  system.cohesion = any_pair([](const PairProperties& pair) { return pair.cohesion > 0; });
+  for (const PairProperties& pair : scene.pairs) system.range = std::max(system.range, pair.cohesion_range);
+  system.friction = system.has_effects() || any_pair([](const PairProperties& pair) { return pair.friction > 0; });
   system.smallest_radius = smallest_inscribed_radius(scene);
   system.scene.walls = joined_walls(system.walls.given, joint_gap * system.smallest_radius);
   double fastest = 0;
@@ -101,8 +104,8 @@ GrainSimulation::Implementation::Implementation(const GrainScene& scene, const G
     if (system.cell.deforms) begin_cell_stress(system, contacts());
   }
   const auto [potential, kinetic] = potential_and_kinetic();
-  const auto [normal, tangential] = elastic();
-  at_start = {potential, kinetic + normal + tangential + elastic_of_bonds(system)};
+  const EnergyLedger stored = contact_energies();
+  at_start = {potential, kinetic + stored.elastic() + stored.cohesion + elastic_of_bonds(system)};
 }
 
 void GrainSimulation::advance(std::int64_t steps) {
@@ -248,6 +251,7 @@ std::vector<GrainContact> GrainSimulation::Implementation::contacts() const {
                                            .arm_j = state.arm_j,
                                            .normal_force = state.impulse / system.dt(),
                                            .tangential_force = state.tangential_impulse / system.dt(),
+                                           .moment = state.lever * state.rolling_impulse / system.dt(),
                                            .mode = state.mode,
                                            .steps = state.steps});
     contact.j =
@@ -256,6 +260,7 @@ std::vector<GrainContact> GrainSimulation::Implementation::contacts() const {
     std::swap(contact.i, contact.j);
     contact.normal = -contact.normal;
     std::swap(contact.arm_i, contact.arm_j);
+    contact.moment = -contact.moment;
   }
   std::ranges::stable_sort(contacts, {}, [](const GrainContact& c) { return std::pair(c.i, c.j); });
   return contacts;
@@ -280,7 +285,8 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
                       .shift = shift_of(c),
                       .force = -on_j,
                       .normal_force = -c.normal_force,
-                      .tangential_force = -c.tangential_force});
+                      .tangential_force = -c.tangential_force,
+                      .bending_moment = -c.moment});
   }
   const std::vector<BodyContact> bonds = contacts_of_bonds(system);
   result.insert(result.end(), bonds.begin(), bonds.end());
@@ -306,14 +312,20 @@ std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic
   });
 }
 
-std::pair<double, double> GrainSimulation::Implementation::elastic() const {
+EnergyLedger GrainSimulation::Implementation::contact_energies() const {
+  EnergyLedger ledger;
+  double &normal = ledger.elastic_normal, &tangential = ledger.elastic_tangential;
   // a force acts wherever bodies overlap
-  auto [normal, tangential] = elastic_of_near_pairs(system);
-  each_list(system.contacts, [&, &normal = normal, &tangential = tangential](const NearParts::List& list) {
+  std::tie(normal, tangential) = elastic_of_near_pairs(system);
+  std::tie(ledger.elastic_rolling, ledger.cohesion) = effects_of_near_pairs(system);
+  each_list(system.contacts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const auto [of_normal, of_tangential] = elastic_of(system, list, p);
       normal += of_normal;
       tangential += of_tangential;
+      const auto [of_rolling, of_cohesion] = effects_of(system, list, p);
+      ledger.elastic_rolling += of_rolling;
+      ledger.cohesion += of_cohesion;
     }
   });
   // these laws count the spring from the first step of the contact on
@@ -323,14 +335,18 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
     const double overlap = geometry_of(system, candidate).overlap;
     if (overlap > 0) normal += system.law().energy(candidate.stiffness, overlap);
   }
-  return {normal, tangential};
+  return ledger;
 }
 
 EnergyLedger GrainSimulation::Implementation::energy() const {
   EnergyLedger ledger = system.lost;
   double potential = 0;
   std::tie(potential, ledger.kinetic) = potential_and_kinetic();
-  std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
+  const EnergyLedger stored = contact_energies();
+  ledger.elastic_normal = stored.elastic_normal;
+  ledger.elastic_tangential = stored.elastic_tangential;
+  ledger.elastic_rolling = stored.elastic_rolling;
+  ledger.cohesion = stored.cohesion;
   ledger.elastic_bond = elastic_of_bonds(system);
   ledger.potential = potential - at_start.potential;
   ledger.initial = at_start.energy;
@@ -359,6 +375,8 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const auto any_pair = [&](auto has) { return std::any_of(scene.pairs.begin(), scene.pairs.end(), has); };
   const bool friction = any_pair([](const PairProperties& pair) { return pair.friction > 0; });
   const bool springs = any_pair([](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; });
+  const bool rolling = any_pair([](const PairProperties& pair) { return pair.rolling_friction > 0; });
+  const bool cohesion = any_pair([](const PairProperties& pair) { return pair.cohesion > 0; });
   const bool losses = any_pair([](const PairProperties& pair) { return pair.restitution < 1; });
   const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const Wall& w) { return w.moves(); });
   const bool servo = std::ranges::any_of(scene.walls, [](const Wall& w) { return w.servo.has_value(); });
@@ -376,16 +394,20 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
                          return b.tangential_dashpot > 0 || b.rolling_dashpot > 0 || b.tangential_spring > 0;
                        }) ||
                        bending;
-  effects.rotation = friction || turning || ellipses || clumps;
+  effects.rotation = friction || rolling || turning || ellipses || clumps;
   effects.entries = {
       entry(fmt::format("normal contact by {}", to_string(options.law)), true, "grains rebound", ""),
       entry("loss at impacts", losses, "restitution below 1", "restitution 1: impacts keep the energy"),
       entry("friction", friction, "a friction coefficient above 0", "friction 0 everywhere"),
       entry("tangential springs", springs, "tangential_ratio above 0", friction ? "tangential_ratio 0" : "no friction"),
+      entry("rolling resistance", rolling, "a coefficient of rolling friction above 0",
+            "rolling_friction 0 everywhere"),
+      entry("cohesion", cohesion, "bodies closer than a range attract", "cohesion 0 everywhere"),
       entry("ellipses", ellipses, law_of_ellipses(options.ellipse_law), "the scene has none"),
       entry("clumps", clumps, "discs that are tied rigidly", "the scene has none"),
       entry("rotation", effects.rotation,
             friction  ? "friction turns grains"
+            : rolling ? "rolling resistance turns grains"
             : turning ? "bonds turn grains"
                       : "normal forces turn ellipses and clumps",
             "no friction: nothing can turn a grain"),

@@ -25,6 +25,7 @@ struct GrainContact {
   Vec2 arm_i = {}, arm_j = {};  ///< from the centres of mass to the contact point, m; {} for a wall
   /// Force on j along n and s, mean over the step, N: a contact pushes, so that compression is positive here.
   double normal_force = 0, tangential_force = 0;
+  double moment = 0;       ///< of rolling resistance on j, N m
   int mode = 0;            ///< case of the map that was used (ContactStep::mode); 0 for other laws
   std::int64_t steps = 0;  ///< number of steps since the contact began
   bool operator==(const GrainContact&) const = default;

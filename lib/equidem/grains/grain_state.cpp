@@ -25,11 +25,13 @@ constexpr auto grain_numbers = [](auto& m, const auto& visit) {
 
 /// Images in periodic cells, parts and arms in scenes with shapes.
 auto numbers_of_contact(const GrainSystem& system) {
-  return [cell = system.cell.active, shapes = !system.shapes.parts.empty()](auto& c, const auto& visit) {
+  return [cell = system.cell.active, shapes = !system.shapes.parts.empty(), rolling = system.rolling](
+             auto& c, const auto& visit) {
     visit(c.i), visit(c.j), visit(c.steps), visit(c.mode), visit(c.parted), visit(c.overlap), visit(c.closing);
     visit(c.normal.x), visit(c.normal.y), visit(c.impulse), visit(c.moment), visit(c.tangential_impulse);
     visit(c.stretch);
     if (cell) visit(c.a), visit(c.b);
+    if (rolling) visit(c.rolling_stretch), visit(c.rolling_impulse);
     if (!shapes) return;
     visit(c.part_i), visit(c.part_j), visit(c.arm_i.x), visit(c.arm_i.y), visit(c.arm_j.x), visit(c.arm_j.y);
   };

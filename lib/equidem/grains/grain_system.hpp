@@ -77,7 +77,15 @@ struct ContactState {
   double overlap = 0, closing = 0;
   Vec2 normal = {};
   double impulse = 0, moment = 0, tangential_impulse = 0, stretch = 0;
-  Vec2 arm_i = {}, arm_j = {};  ///< from the centres of mass to the contact point, m; {} for a wall
+  Vec2 arm_i = {}, arm_j = {};                      ///< from the centres of mass to the contact point, m; {} for a wall
+  double rolling_stretch = 0, rolling_impulse = 0;  ///< as in ContactEffects
+  double lever = 0;                                 ///< R of rolling, m; not saved
+
+  void set_effects(const ContactEffects& effects, std::size_t lane) {
+    rolling_stretch = effects.stretch[lane];
+    rolling_impulse = effects.impulse[lane];
+    lever = effects.lever[lane];
+  }
 };
 
 /// Displacement and velocity of a wall in the present step.
@@ -213,7 +221,9 @@ struct GrainSystem {
   GrainOptions options;
   double length = 0;                 ///< d_c
   std::vector<double> dissipations;  ///< LawFacts::dissipation of scene.pairs
-  bool friction = false;
+  bool friction = false;             ///< contacts turn bodies: they have friction, or effects
+  bool rolling = false, cohesion = false;
+  double range = 0;            ///< the largest of cohesion, m
   double smallest_radius = 0;  ///< smallest radius of the inscribed circles of all parts, m
 
   GrainBodies bodies;
@@ -232,6 +242,9 @@ struct GrainSystem {
   [[nodiscard]] ContactSums sums() { return {lost, &walls.loads}; }
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
+  [[nodiscard]] bool has_effects() const { return rolling || cohesion; }
+  /// Time from that of the velocities to that of the positions, s, under a force law.
+  [[nodiscard]] double lag() const { return options.verlet() ? 0 : 0.5 * options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   /// Of a body and another one, or an image of it, or a wall ~j.
   [[nodiscard]] const PairProperties& properties(std::int32_t i, std::int32_t j) const {
@@ -278,6 +291,9 @@ void find_dissipations(GrainSystem& system);
 /// \param j a body, an image of one, or a wall ~j
 ContactConstants constants_of(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
+/// \param j as in constants_of \param stiffness of its contact with i
+EffectConstants effects_between(const GrainSystem& system, std::int32_t i, std::int32_t j, double stiffness);
+
 /// Connect the impulses of pairs with bodies of later blocks, when lists of near pairs have been found, and set
 /// GrainBodies::earliest.
 void connect_blocks(GrainSystem& system);
@@ -302,15 +318,17 @@ void forget_contact(Candidate& candidate, EnergyLedger& lost);
 /// \param wall as Candidate::j
 /// \param point at which it acts, m
 /// \param velocity of the wall, m/s
+/// \param couple angular impulse besides, N m s
 inline void push_wall(const GrainSystem& system, std::int32_t wall, Vec2 point, Vec2 impulse, Vec2 velocity,
-                      ContactSums sums) {
+                      ContactSums sums, double couple = 0) {
   const auto w = static_cast<std::size_t>(~wall);
   WallLoad& load = (*sums.on_walls)[w];
   const double work = -dot(impulse, velocity);
   sums.lost.work_of_walls += work;
   load.work += work;
   load.step_impulse += impulse;
-  load.step_angular += cross(point - (system.walls.given[w].point + system.walls.places[w].displacement), impulse);
+  load.step_angular +=
+      cross(point - (system.walls.given[w].point + system.walls.places[w].displacement), impulse) + couple;
 }
 
 /// Set the displacement of walls at the start of the step and their mean velocity over it.

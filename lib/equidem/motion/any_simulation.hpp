@@ -40,7 +40,7 @@ struct BodyContact {
   Vec2 force = {};              ///< on i; its negative acts on j
   double normal_force = 0;      ///< on i along the normal n from i: tension positive
   double tangential_force = 0;  ///< on i along s = (-n_y, n_x)
-  double bending_moment = 0;    ///< N, of bonds with bending springs, on i; its negative acts on j
+  double bending_moment = 0;    ///< N, of bonds with bending springs and of rolling, on i; its negative acts on j
 };
 
 /// A contact of an assembly by its number, at the places of before the motion.

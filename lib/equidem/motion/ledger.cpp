@@ -22,6 +22,8 @@ constexpr ListedTerm all_terms[] = {
     {{"elastic", "elastic", stored, &EnergyLedger::elastic_bonded}, bonded},
     {{"elastic_normal", "normal springs", stored, &EnergyLedger::elastic_normal}, colliding},
     {{"elastic_tangential", "tangential springs", stored, &EnergyLedger::elastic_tangential}, colliding},
+    {{"elastic_rolling", "rolling springs", stored, &EnergyLedger::elastic_rolling}, colliding},
+    {{"cohesion", "cohesion", stored, &EnergyLedger::cohesion}, colliding},
     {{"elastic_bond", "springs of bonds", stored, &EnergyLedger::elastic_bond}, colliding},
     {{"potential", "potential", stored, &EnergyLedger::potential}, bonded | colliding},
     {{"sway", "sway of leapfrog", sway, &EnergyLedger::sway}, bonded},
@@ -32,6 +34,7 @@ constexpr ListedTerm all_terms[] = {
     {{"lost_dashpot", "normal dashpots", lost, &EnergyLedger::lost_dashpot}, colliding},
     {{"lost_slip", "slip", lost, &EnergyLedger::lost_slip}, colliding},
     {{"lost_tangential_dashpot", "tangential dashpots", lost, &EnergyLedger::lost_tangential_dashpot}, colliding},
+    {{"lost_rolling", "rolling", lost, &EnergyLedger::lost_rolling}, colliding},
     {{"lost_release", "released when contacts opened", lost, &EnergyLedger::lost_release}, colliding},
     {{"lost_bond", "bonds", lost, &EnergyLedger::lost_bond}, colliding},
     {{"lost_breaking", "bonds that broke", lost, &EnergyLedger::lost_breaking}, colliding},
@@ -74,7 +77,7 @@ double EnergyLedger::error() const {
 
 double EnergyLedger::largest() const {
   double most = 0;
-  for (const double energy : {kinetic, elastic(), potential, lost(), work(), initial})
+  for (const double energy : {kinetic, elastic(), potential, cohesion, lost(), work(), initial})
     most = std::max(most, std::abs(energy));
   return most;
 }

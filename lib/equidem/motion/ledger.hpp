@@ -23,6 +23,8 @@ struct EnergyLedger {
   double kinetic = 0;
   double elastic_bonded = 0;                          ///< contacts of bonded discs, their walls included
   double elastic_normal = 0, elastic_tangential = 0;  ///< contacts of colliding bodies
+  double elastic_rolling = 0;                         ///< their rolling springs
+  double cohesion = 0;                                ///< potential energy of their attraction, <= 0
   double elastic_bond = 0;                            ///< springs of bonds between colliding bodies
   double potential = 0;                               ///< gravity, 0 at the start
   double sway = 0;                                    ///< 0 at the start
@@ -30,8 +32,10 @@ struct EnergyLedger {
   double lost_restitution = 0;  ///< maps
   double lost_dashpot = 0;      ///< normal dashpots
   double lost_slip = 0, lost_tangential_dashpot = 0;
-  /// Energy released at the end of a contact: tangential springs, and normal springs of contacts that end at zero
-  /// force.
+  double lost_rolling = 0;  ///< rolling friction and rolling dashpots
+  /// Energy released at the end of a contact: tangential and rolling springs, and normal springs of contacts that end
+  /// at zero force. With cohesion also what its force, which begins and ends at once, does in the step of a beginning
+  /// or an end, less its potential energy there: of either sign, and of the first order of the step.
   double lost_release = 0;
   double lost_bond = 0;  ///< dashpots of bonds
   /// Released by bonds that broke: their springs, less what the contacts behind them store at once.
@@ -42,12 +46,15 @@ struct EnergyLedger {
   double work_of_stages = 0;
   double initial = 0;  ///< kinetic + elastic at the start
 
-  [[nodiscard]] double elastic() const { return elastic_bonded + elastic_normal + elastic_tangential + elastic_bond; }
+  [[nodiscard]] double elastic() const {
+    return elastic_bonded + elastic_normal + elastic_tangential + elastic_rolling + elastic_bond;
+  }
   [[nodiscard]] double lost() const;
   [[nodiscard]] double work() const;
   /// Error of the balance: stored - sway + lost - work - initial.
   [[nodiscard]] double error() const;
-  /// The largest absolute value among kinetic, elastic, potential, lost, work and initial: the scale of the error.
+  /// The largest absolute value among kinetic, elastic, potential, cohesion, lost, work and initial: the scale of the
+  /// error.
   [[nodiscard]] double largest() const;
 };
 

@@ -20,6 +20,7 @@ CASES = Path(__file__).resolve().parents[3] / "data" / "cases"
 SAND_SEEDS, STIFFNESS_SEEDS, ROCK_SEEDS, HEAP_SEEDS = range(1, 9), range(1, 5), range(4, 8), range(3, 9)
 ROCK_SIZES, DISC_SIZES = (200, 800, 3200), (300, 1200, 4800)
 FRICTIONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8)
+ROLLING_FRICTIONS = (0.05, 0.1, 0.2, 0.4, 0.8)
 PROBE = 0.24  # half the side of the square in which the Brazilian stress is read, over the radius of the disc
 
 
@@ -109,7 +110,11 @@ def brazilian(lab):
 
 
 def repose(lab):
-    """Angles of the slopes of the samples over the friction."""
+    """Angles of the slopes of the samples over the friction, and over the rolling friction of discs with friction 0.5."""
     taken = [sample(lab, f"heap{seed}_sample", samples.heap(lab.equidem, seed)) for seed in HEAP_SEEDS]
-    return {friction: [readings.slope(lab.run("repose", *settings, f"collisions.friction={friction}")[0])["angle"] for settings in taken]
-            for friction in FRICTIONS}
+
+    def angles(*contact):
+        return [readings.slope(lab.run("repose", *settings, *contact)[0])["angle"] for settings in taken]
+
+    return ({friction: angles(f"collisions.friction={friction}") for friction in FRICTIONS},
+            {rolling: angles(f"collisions.rolling_friction={rolling}", "collisions.rolling_damping=0.3") for rolling in ROLLING_FRICTIONS})

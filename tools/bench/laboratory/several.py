@@ -89,11 +89,16 @@ def brazilian(lab):
 
 
 def repose(lab):
-    slopes = ensembles.repose(lab)
+    slopes, rolling = ensembles.repose(lab)
+
+    def rows(name, of):
+        return table([name, "slope", "of the samples"],
+                     [[friction, both(angles) + "°", ", ".join(f"{one:.1f}" for one in angles)] for friction, angles in of.items()])
+
     return (f"Angle of repose over friction, {len(ensembles.HEAP_SEEDS)} samples each: a line by least squares through the highest disc in each of eleven\n"
             "columns of 10 mm. It grows with each step of the friction, from 0.5 to 0.8 by less than its standard error.\n\n"
-            + table(["friction", "slope", "of the samples"],
-                    [[friction, both(angles) + "°", ", ".join(f"{one:.1f}" for one in angles)] for friction, angles in slopes.items()]))
+            + rows("friction", slopes)
+            + "\n\nOver the rolling friction of the same columns with friction 0.5 and rolling damping 0.3.\n\n" + rows("rolling friction", rolling))
 
 
 def section(lab):

@@ -325,7 +325,7 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       {"lost at impacts", PlotColour::orange,
        [](const EnergyLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
       {"lost by friction", PlotColour::purple,
-       [](const EnergyLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
+       [](const EnergyLedger& l) { return l.lost_slip + l.lost_tangential_dashpot + l.lost_rolling; }},
       {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond + l.lost_breaking; }},
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };

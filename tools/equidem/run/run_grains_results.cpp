@@ -102,11 +102,21 @@ std::string describe_pair(const GrainCase& resolved, const PairContact& pair) {
   } else {
     text += fmt::format(", k = {:.6g} {}", p.stiffness, describe(resolved.options.law).stiffness_unit);
   }
-  if (p.friction == 0) return text + ", no friction";
+  const auto effects = [&] {
+    std::string found;
+    if (p.rolling_friction > 0)
+      found += fmt::format(", rolling friction {}, k_r/(kN R²) {:.6g}", p.rolling_friction, p.rolling_ratio);
+    if (p.rolling_damping > 0) found += fmt::format(", rolling damping {}", p.rolling_damping);
+    if (p.cohesion > 0)
+      found += fmt::format(", cohesion {:.6g} {} within {:.6g} m", p.cohesion,
+                           resolved.body == Body::disc ? "N/m" : "N", p.cohesion_range);
+    return found;
+  };
+  if (p.friction == 0) return text + ", no friction" + effects();
   text += fmt::format(", friction {}, kT/kN {:.6g}", p.friction, p.tangential_ratio);
   if (p.tangential_ratio == 0) text += " (slides always)";
   if (p.tangential_damping > 0) text += fmt::format(", tangential damping {}", p.tangential_damping);
-  return text;
+  return text + effects();
 }
 
 /// Every two kinds that can meet; pairs with equal contacts on one line.

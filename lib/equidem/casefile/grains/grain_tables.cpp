@@ -106,7 +106,20 @@ std::vector<Key<PairOptions>> contact_keys() {
           "kT/kN of the tangential spring, with friction; left out: 2/7, with wave speeds theirs, and for the maps, "
           "which act in one or two steps, 0: no spring, contacts slide"),
       key("tangential_damping", &P::tangential_damping, not_negative,
-          "zeta of the tangential dashpot; left out: 0, with damping that of its dashpot")};
+          "zeta of the tangential dashpot; left out: 0, with damping that of its dashpot"),
+      key("rolling_friction", &P::rolling_friction, not_negative,
+          "mu_r: a contact resists the relative rotation of its bodies with a moment of at most mu_r R times the "
+          "repulsion, R = R_i R_j/(R_i + R_j), at a wall the radius; laws that give a force"),
+      key("rolling_ratio", &P::rolling_ratio, range({.low = 0, .high = 1e6, .low_open = true}),
+          "k_r/(kN R²) of the rolling spring, with rolling_friction; left out: tangential_ratio, without friction 2/7"),
+      key("rolling_damping", &P::rolling_damping, not_negative,
+          "zeta of the rolling dashpot, with rolling_friction; left out: as tangential_damping"),
+      key("cohesion", &P::cohesion, unit("N (discs: per m of depth)"), not_negative,
+          "constant attraction of bodies closer than cohesion_range, overlapping ones too; friction then holds up to "
+          "mu "
+          "times the sum of the normal force and it; laws that give a force"),
+      key("cohesion_range", &P::cohesion_range, unit("m"), not_negative,
+          "largest gap at which cohesion acts; with cohesion")};
 }
 
 }  // namespace

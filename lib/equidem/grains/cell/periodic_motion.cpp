@@ -148,7 +148,7 @@ void measure_resistance(GrainSystem& system) {
       const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
       const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[block.first(p)].position;
       const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
-      if (!(distance > 0)) continue;
+      if (!(distance > 0) || (system.cohesion && overlap == 0)) continue;
       const double stiffness_of_pair = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
       ContactResistance of =
           resistance_along(system.law(), stiffness_of_pair, block.groups[g].dashpot[k] / system.dt(), overlap);
@@ -163,6 +163,7 @@ void measure_resistance(GrainSystem& system) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
       const ContactState contact = state_of(system, list, p);
+      if (system.cohesion && !(contact.overlap > 0)) continue;
       const ContactConstants constants = constants_of(system, contact.i, contact.j);
       add_resistance(system.position_of(contact.j) - system.position_of(contact.i), contact.normal,
                      resistance_of(system, constants, contact.overlap), stiffness, viscosity);
@@ -219,7 +220,7 @@ void drift_in_cell(GrainSystem& system) {
   const Tensor2& gradient = cell.gradient;
   // two bodies that touch come nearer by their own ways and by that of the cell along their branch
   const double stretch = std::sqrt(contraction(gradient, gradient));
-  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.margin);
+  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.margin + system.range);
   const bool near = system.contacts.near.active;
   find_longest_way(system, [&](std::size_t block) {
     CellSums& sums = cell.sums[block] = {};
@@ -350,7 +351,7 @@ void list_contacts(GrainSystem& system, const std::vector<ContactState>& contact
     std::vector<Circle> circles;
     for (std::size_t k = 0; k < count; ++k)
       circles.push_back({system.bodies.motions[k].position, system.bodies.constants[k].radius});
-    images = images_near(circles, system.cell.now, system.contacts.margin);
+    images = images_near(circles, system.cell.now, system.contacts.margin + system.range);
     if (system.contacts.near.active) system.contacts.near.bodies.resize(count + images.size());
     list_images_of_shapes(system);
   }

@@ -28,13 +28,16 @@ Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
 /// The bodies of a bond as a contact that begins now.
 struct NewContact {
   double stiffness = 0, overlap = 0;
+  double attraction = 0;  ///< N
 };
 
 NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const double overlap =
       system.bodies.constants[i].radius + system.bodies.constants[j].radius - norm(branch_of(system, bond));
-  return {constants_of(system, bond.i, bond.j).stiffness, std::max(overlap, 0.0)};
+  const double stiffness = constants_of(system, bond.i, bond.j).stiffness;
+  const EffectConstants effects = effects_between(system, bond.i, bond.j, stiffness);
+  return {stiffness, std::max(overlap, 0.0), overlap > -effects.range ? effects.attraction : 0};
 }
 
 /// Verlet schemes kick bodies at the start of a step by the impulses of the last one: those of a bond that has broken
@@ -42,7 +45,7 @@ NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
 void replace_impulses(GrainSystem& system, const TiedPair& bond, const NewContact& contact) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const Vec2 branch = branch_of(system, bond);
-  const double force = contact.stiffness * std::pow(contact.overlap, system.law().spring_power);
+  const double force = contact.stiffness * std::pow(contact.overlap, system.law().spring_power) - contact.attraction;
   const Vec2 push = system.dt() * force / norm(branch) * branch;
   const auto [of_i, of_j] = impulses_of_bond(system, bond);
   BodyImpulse &on_i = system.bodies.impulses[i], &on_j = system.bodies.impulses[j];

@@ -35,7 +35,8 @@ PartGeometry geometry_of_parts(const GrainSystem& system, const Partners& of, bo
   const Vec2 to_i = offset_of(part_i, system.shapes.axes[i]), to_j = offset_of(part_j, system.shapes.axes[j]);
   const Vec2 branch = system.position_of(of.j) - system.bodies.motions[i].position + (to_j - to_i);
   const double reach = part_i.a + part_j.a, square = dot(branch, branch);
-  if (square >= reach * reach) return {};
+  const bool gaps = system.range > 0;
+  if (square >= reach * reach && !gaps) return {};
   const double share = part_i.size / (part_i.size + part_j.size);
   if (part_i.is_round() && part_j.is_round()) {
     const double distance = std::sqrt(square), lever = share * distance, overlap = reach - distance;
@@ -53,8 +54,8 @@ PartGeometry geometry_of_parts(const GrainSystem& system, const Partners& of, bo
     if (!contact.is_contact()) return {};
     return {-contact.gap, contact.normal, to_i + contact.arm_i, to_j + contact.arm_j, 0, 0};
   }
-  const EllipseContact contact = contact_of_parts(e_i, e_j, branch, touching, normal);
-  if (contact.gap > 0) return {};
+  const EllipseContact contact = contact_of_parts(e_i, e_j, branch, touching, normal, system.range);
+  if (contact.gap > 0 && !gaps) return {};
   const double overlap = -contact.gap, sunk_i = share * overlap, sunk_j = overlap - sunk_i;
   return {overlap,
           contact.normal,
@@ -65,16 +66,16 @@ PartGeometry geometry_of_parts(const GrainSystem& system, const Partners& of, bo
 }
 
 PartGeometry geometry_with_wall(const GrainSystem& system, std::int32_t number, std::size_t w, Vec2 normal) {
-  const bool discs = system.shapes.parts.empty();
+  const bool discs = system.shapes.parts.empty(), gaps = system.range > 0;
   const auto i = static_cast<std::size_t>(discs ? number : system.shapes.body_of_part[number]);
   Vec2 offset;
   double radius = system.bodies.constants[i].radius;
   if (!discs) {
     const GrainPart& part = system.shapes.parts[number];
     if (!part.is_round()) {
-      if (is_clear_of_line(system, i, part, w)) return {};
+      if (!gaps && is_clear_of_line(system, i, part, w)) return {};
       const EllipseContact contact = contact_with_wall(system, i, part, w, normal);
-      if (contact.gap >= 0) return {};
+      if (contact.gap >= 0 && !gaps) return {};
       return {-contact.gap, contact.normal, contact.arm_i, {}, 0, 0, cross(contact.arm_i, contact.normal)};
     }
     offset = offset_of(part, system.shapes.axes[i]);
@@ -83,7 +84,7 @@ PartGeometry geometry_with_wall(const GrainSystem& system, std::int32_t number, 
   const WallContact contact =
       nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position + offset);
   const double overlap = radius - contact.distance;
-  if (!(overlap > 0)) return {};
+  if (!(overlap > 0) && !gaps) return {};
   normal = -contact.normal;
   const Vec2 arm = radius * normal;  // as restored from a saved state of discs
   return {overlap, normal, discs ? arm : offset + arm, {}, 0, 0, cross(offset, normal)};
@@ -121,14 +122,15 @@ EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, V
 }
 
 /// As long as the pair was not touching a step ago nothing of the past may enter: lists made anew would not know it.
-EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal) {
-  constexpr WhenApart quick = WhenApart::only_that_it_is;
+EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal,
+                                double range) {
+  const WhenApart quick = range > 0 ? WhenApart::distance : WhenApart::only_that_it_is;
   if (touching) return contact_of_ellipses(i, j, branch, normal, quick);
   if (normal != Vec2{}) {
     const double gap = separation_along(i, j, branch, normal);
-    if (gap > 0) return {EllipseState::apart, gap, normal, {}, {}};
+    if (gap > range) return {EllipseState::apart, gap, normal, {}, {}};
     const EllipseContact contact = contact_of_ellipses(i, j, branch, normal, quick);
-    if (contact.gap > 0) return contact;
+    if (contact.gap > range) return contact;
   }
   return contact_of_ellipses(i, j, branch, {}, quick);
 }

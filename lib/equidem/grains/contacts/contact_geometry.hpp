@@ -76,7 +76,7 @@ inline double inverse_tangential_mass(const GrainSystem& system, const Candidate
 /// point divides the overlap in the ratio of the radii of discs of equal area (discs: r_i/(r_i + r_j)); at a wall it is
 /// the point of the grain.
 struct PartGeometry {
-  double overlap = 0;             ///< m; 0: apart
+  double overlap = 0;             ///< m; 0: apart, if no contact has cohesion; else negative by the gap
   Vec2 normal = {};               ///< unit, from i to j
   Vec2 arm_i = {}, arm_j = {};    ///< m
   double sunk_i = 0, sunk_j = 0;  ///< distance from the end of the arm to the surface, m
@@ -95,8 +95,10 @@ PartGeometry geometry_with_wall(const GrainSystem& system, std::int32_t number, 
 /// The exact contact of two parts of which one is an ellipse.
 /// \param normal of the last step if touching, else a direction along which they were apart, or {}: start of the
 ///        iteration, without effect on the result
-/// \return if they are apart, only gap > 0 and a normal along which they are
-EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal);
+/// \param range beyond which they are apart, m
+/// \return if they are apart, only gap > range and a normal along which they are
+EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal,
+                                double range = 0);
 
 /// Reference point of the contact of a part with a wall: the centre of a disc, the contact point of an ellipse.
 Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t part, std::int32_t wall);

@@ -28,10 +28,8 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, 
   if constexpr (kind.equal) {
     return numbers.law;
   } else {
-    const Lanes spring = load<Lanes>(laws->tangential_stiffness);
-    const Lanes compliance = 1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1));
-    return law_lanes(load<Lanes>(laws->stiffness), load<Lanes>(laws->least), load<Lanes>(laws->friction), spring,
-                     compliance, numbers.dt);
+    return {numbers.dt * load<Lanes>(laws->stiffness), load<Lanes>(laws->least),
+            spring_lanes(load<Lanes>(laws->friction), load<Lanes>(laws->tangential_stiffness), numbers.dt)};
   }
 }
 
@@ -47,7 +45,7 @@ struct DiscGeometry {
 /// Results of the contacts of a group.
 template <class Lanes>
 struct Outcome {
-  Lanes px, py, rim;  ///< impulse on j
+  Lanes px, py, torque, rim;  ///< impulse on j
   ContactLosses<Lanes> losses;
   bool any, changes;
 };
@@ -131,12 +129,35 @@ EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const DiscGeometry<Lanes>& 
   return motion;
 }
 
+/// R (spin of j - spin of i), by the speeds of the rims.
+template <ResponseKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes rolling_velocity(const PairBody* bodies, const PairGroup& group,
+                                             const ContactEffects& effects) {
+  PairLanes rim_i, rim_j;
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    const PairBody &i = bodies[group.i[k]], &j = bodies[group.j[k]];
+    rim_i[k] = kind.verlet ? i.rim_speed : i.middle_rim_speed;
+    rim_j[k] = kind.verlet ? j.rim_speed : j.middle_rim_speed;
+  }
+  const Lanes share = load<Lanes>(effects.share);
+  return share * load<Lanes>(rim_j) - (1 - share) * load<Lanes>(rim_i);
+}
+
 template <class Law, ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, const DiscGeometry<Lanes>& geometry,
-                                         PairGroup& group, PairSlips* slips, const PairLaws* laws, PairRecords* records,
+EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, const PairBody* bodies,
+                                         const DiscGeometry<Lanes>& geometry, PairGroup& group, PairSlips* slips,
+                                         const PairLaws* laws, ContactEffects* effects, PairRecords* records,
                                          LaneSums<Lanes>& sums, Outcome<Lanes>& outcome) {
   ContactChanges<Lanes> at;
-  outcome.any = begin_and_end(negative(Lanes{} - geometry.overlap), numbers.now, group.since, at, sums);
+  EffectLanes<Lanes> effect_lanes;
+  Bits<Lanes> touch;
+  if constexpr (kind.cohesion) {
+    effect_lanes.cohesion = cohesion_lanes<Lanes>(*effects);
+    touch = negative(Lanes{} - (geometry.overlap + effect_lanes.cohesion.range));
+  } else {
+    touch = negative(Lanes{} - geometry.overlap);
+  }
+  outcome.any = begin_and_end(touch, numbers.now, group.since, at, sums);
   if (!outcome.any) return;
   outcome.changes = at.any;
   const ContactMotion<Lanes> motion = motion_of<kind>(geometry, group, slips, numbers.dt);
@@ -149,8 +170,12 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
     memory.stretch = load<Lanes>(slips->stretch);
     slip_dashpot = load<Lanes>(slips->dashpot);
   }
+  if constexpr (kind.rolling) {
+    effect_lanes.rolling = rolling_lanes(*effects, rolling_velocity<kind, Lanes>(bodies, group, *effects), numbers.dt);
+    memory.rolling = rolling_memory<Lanes>(*effects);
+  }
   outcome.losses = respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot), slip_dashpot, motion, at,
-                                      numbers.dt, memory);
+                                      numbers.dt, effect_lanes, memory);
   store(memory.impulse, group.impulse);
   outcome.px = memory.impulse * geometry.nx;
   outcome.py = memory.impulse * geometry.ny;
@@ -160,6 +185,10 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
     outcome.px -= memory.tangential * geometry.ny;
     outcome.py += memory.tangential * geometry.nx;
     outcome.rim = geometry.share * memory.tangential;
+  }
+  if constexpr (kind.rolling) {
+    store(memory.rolling, *effects);
+    outcome.torque = load<Lanes>(effects->lever) * memory.rolling.impulse;
   }
   if (numbers.record) {
     store(geometry.overlap, records->overlap);
@@ -176,7 +205,7 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& ou
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
   add_losses<kind>(outcome.losses, outcome.changes, sums);
   Row<Lanes> on_i[lanes_of_pairs];
-  rows_of(outcome.px, outcome.py, Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
+  rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
   // the tangential impulse turns both bodies the same way round, and its lever is the radius
   alignas(32) constexpr long long rim[4] = {0, 0, 0, std::numeric_limits<long long>::min()};
   const auto turned = load<Bits<Row<Lanes>>>(rim);
@@ -196,10 +225,12 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   const NearPairs& near = system.contacts.near;
   PairBlock& block = system.contacts.near.blocks[b];
   const PairLaw& law = near.law;
-  const LoopNumbers<Lanes> numbers{
-      law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
-                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), system.dt()),
-      system.dt(), system.step + (system.options.verlet() ? 0 : 1), near.record};
+  const LoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
+                                    spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
+                                                 all<Lanes>(1 / law.tangential_stiffness), system.dt())},
+                                   system.dt(),
+                                   system.step + (system.options.verlet() ? 0 : 1),
+                                   near.record};
   block.records.resize(near.record ? block.groups.size() : 0);
   LaneSums<Lanes> sums;
   const PairBody* bodies = near.bodies.data();
@@ -211,13 +242,15 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   PairGroup* groups = block.groups.data();
   PairSlips* slips = block.slips.data();
   const PairLaws* laws = block.laws.data();
+  ContactEffects* effects = block.effects.data();
   PairRecords* records = block.records.data();
   for (std::size_t first = 0; first < count; first += groups_at_once) {
     const std::size_t here = std::min(groups_at_once, count - first);
     for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
-      respond_discs<Law, kind>(numbers, geometry[g], groups[first + g], kind.friction ? slips + (first + g) : nullptr,
-                               kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr,
+      respond_discs<Law, kind>(numbers, bodies, geometry[g], groups[first + g],
+                               kind.friction ? slips + (first + g) : nullptr, kind.equal ? nullptr : laws + (first + g),
+                               effects_at<kind>(effects, first + g), near.record ? records + (first + g) : nullptr,
                                sums, outcome[g]);
     }
     if (first + here <= block.first_outward) {
@@ -236,6 +269,11 @@ NearPairs::Loop choose_pair_loop() {
 
 template <class Law, bool equal>
 NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
+  if constexpr (!equal) {
+    if (system.has_effects())
+      return system.options.verlet() ? choose_pair_loop<Law, with_effects<true>>()
+                                     : choose_pair_loop<Law, with_effects<false>>();
+  }
   if (system.options.verlet()) {
     return system.friction ? choose_pair_loop<Law, ResponseKind{true, true, equal, equal}>()
                            : choose_pair_loop<Law, ResponseKind{false, true, equal, equal}>();

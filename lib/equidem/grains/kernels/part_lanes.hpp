@@ -167,15 +167,17 @@ struct HardLanes {
   PairLanes gap, normal_x, normal_y, arm_i_x, arm_i_y, arm_j_x, arm_j_y;
 };
 
-[[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const PartGroup& group, HardLanes& lanes) {
+/// \param effects null: no contact has cohesion
+[[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const PartGroup& group, HardLanes& lanes,
+                                                         const ContactEffects* effects) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     if (lanes.hard[k] == 0) continue;
     const auto number = [&](PartGroup::Column column) { return group.numbers[column][k]; };
-    const EllipseContact contact =
-        contact_of_parts({number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
-                         {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
-                         {lanes.branch_x[k], lanes.branch_y[k]}, group.since[k] > PairGroup::apart,
-                         {number(PartGroup::normal_x), number(PartGroup::normal_y)});
+    const EllipseContact contact = contact_of_parts(
+        {number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
+        {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
+        {lanes.branch_x[k], lanes.branch_y[k]}, group.since[k] > PairGroup::apart,
+        {number(PartGroup::normal_x), number(PartGroup::normal_y)}, effects == nullptr ? 0 : effects->range[k]);
     lanes.gap[k] = contact.gap;
     lanes.normal_x[k] = contact.normal.x;
     lanes.normal_y[k] = contact.normal.y;
@@ -220,7 +222,8 @@ EQUIDEM_ALWAYS_INLINE void store_standing(const Standing<Lanes>& s, const Bits<L
 /// Meet one by one where it is hard.
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lanes>& s, const Bits<Lanes>& hard,
-                                     Lanes& gap, Vectors<Lanes>& normal, Vectors<Lanes>& to_i, Vectors<Lanes>& to_j) {
+                                     Lanes& gap, Vectors<Lanes>& normal, Vectors<Lanes>& to_i, Vectors<Lanes>& to_j,
+                                     const ContactEffects* effects) {
   HardLanes lanes;
   store_standing(s, hard, lanes);
   store(gap, lanes.gap);
@@ -230,7 +233,7 @@ EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lane
   store(to_i.y, lanes.arm_i_y);
   store(to_j.x, lanes.arm_j_x);
   store(to_j.y, lanes.arm_j_y);
-  meet_one_by_one(group, lanes);
+  meet_one_by_one(group, lanes, effects);
   gap = load<Lanes>(lanes.gap);
   normal = {load<Lanes>(lanes.normal_x), load<Lanes>(lanes.normal_y)};
   to_i = {load<Lanes>(lanes.arm_i_x), load<Lanes>(lanes.arm_i_y)};
@@ -239,9 +242,11 @@ EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lane
 
 /// contact_of_parts() by Newton's iteration from the last normal, if it is short and certain to converge to the global
 /// maximum. The result of a lane depends on that lane alone.
-template <class Lanes>
+/// \tparam cohesion contacts have a range
+template <bool cohesion, class Lanes>
 EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group, const Standing<Lanes>& s,
-                                                                const Bits<Lanes>& used, const Bits<Lanes>& alive) {
+                                                                const Bits<Lanes>& used, const Bits<Lanes>& alive,
+                                                                const ContactEffects* effects) {
   constexpr int most_steps = 3;
   const auto a_i = column<Lanes>(group, PartGroup::a_i), b_i = column<Lanes>(group, PartGroup::b_i);
   const auto a_j = column<Lanes>(group, PartGroup::a_j), b_j = column<Lanes>(group, PartGroup::b_j);
@@ -263,7 +268,11 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group
     const Lanes bend = gap + (of_i.radius + of_j.radius);
     per_bend = 1 / bend;
     first = slope * per_bend;
-    apart |= ~done & negative(Lanes{} - gap);
+    if constexpr (cohesion) {
+      apart |= ~done & negative(load<Lanes>(effects->range) - gap);
+    } else {
+      apart |= ~done & negative(Lanes{} - gap);
+    }
     done |= apart;
     const Bits<Lanes> there = negative(magnitude(slope) - arrived * bend);
     const Bits<Lanes> highest = negative(-gap - sharpest);
@@ -288,7 +297,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group
   gap = choose(apart, gap, gap + 0.5 * first * slope);
   Vectors<Lanes> normal = choose(apart, n, shorter * n + turn * perpendicular(n));
   Vectors<Lanes> to_i = support_points(of_i, n, turn), to_j = -support_points(of_j, n, turn);
-  if (any(hard)) meet_hard(group, s, hard, gap, normal, to_i, to_j);
+  if (any(hard)) meet_hard(group, s, hard, gap, normal, to_i, to_j, cohesion ? effects : nullptr);
   // keep earlier separating directions
   const Bits<Lanes> renew = alive | hard;
   store(choose(renew, normal.x, last.x), group.numbers[PartGroup::normal_x]);

@@ -54,10 +54,9 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbe
   if constexpr (kind.response.equal) {
     return numbers.law;
   } else {
-    const auto spring = column<Lanes>(group, PartGroup::tangential_stiffness);
-    return law_lanes(column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
-                     column<Lanes>(group, PartGroup::friction), spring,
-                     1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1)), numbers.dt);
+    return {numbers.dt * column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
+            spring_lanes(column<Lanes>(group, PartGroup::friction),
+                         column<Lanes>(group, PartGroup::tangential_stiffness), numbers.dt)};
   }
 }
 
@@ -140,7 +139,7 @@ EQUIDEM_ALWAYS_INLINE std::int32_t body_of(const std::int32_t* body_of_part, std
 inline void measure_walls(const GrainSystem& system, const PartGroup& group, const std::int32_t* body_of_part,
                           WallLanes& found) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    found.overlap[k] = -1;
+    found.overlap[k] = -std::numeric_limits<double>::max();  // beyond any range
     found.normal_x[k] = found.normal_y[k] = found.arm_x[k] = found.arm_y[k] = found.across[k] = 0;
     if (group.since[k] == PairGroup::unused || group.numbers[PartGroup::covered][k] != 0) continue;
     const auto w = static_cast<std::size_t>(group.j[k]);
@@ -200,10 +199,10 @@ inline void find_velocities_at_walls(const GrainSystem& system, const PartGroup&
 }
 
 /// The impulses of bodies on walls, those of a Verlet drift half of each of the kicks at its ends.
-/// \param kicks on the walls, N s
+/// \param kicks on the walls, N s, and couples, N m s
 template <bool verlet>
 inline void push_walls(const GrainSystem& system, const PartGroup& group, const std::int32_t* body_of_part,
-                       const std::int64_t (&acts)[lanes_of_pairs], const PairLanes (&kicks)[2],
+                       const std::int64_t (&acts)[lanes_of_pairs], const PairLanes (&kicks)[3],
                        const PairLanes (&arms)[2], BlockSums& sums) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     if (acts[k] == 0) continue;
@@ -211,15 +210,15 @@ inline void push_walls(const GrainSystem& system, const PartGroup& group, const 
     const Vec2 point = system.bodies.motions[i].position + Vec2{arms[0][k], arms[1][k]};
     const WallPlace& wall = system.walls.places[group.j[k]];
     push_wall(system, ~group.j[k], point, {kicks[0][k], kicks[1][k]},
-              verlet ? wall.passed_velocity : wall.acting_velocity, sums.sums());
+              verlet ? wall.passed_velocity : wall.acting_velocity, sums.sums(), kicks[2][k]);
   }
 }
 
 /// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
 template <class Law, PartLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, GrainSystem& system,
-                                         const Receivers& to, PartGroup& group, BodyImpulse*& outward,
-                                         LaneSums<Lanes>& sums, BlockSums& block) {
+                                         const Receivers& to, PartGroup& group, ContactEffects* effects,
+                                         BodyImpulse*& outward, LaneSums<Lanes>& sums, BlockSums& block) {
   constexpr bool verlet = kind.response.verlet, walls = kind.meets == Meets::walls;
   const double dt = numbers.dt;
   const auto since = load<Bits<Lanes>>(group.since);
@@ -228,6 +227,8 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
   Standing<Lanes> s, drift;
   GeometryLanes<Lanes> found;
   Levers<Lanes> levers;
+  EffectLanes<Lanes> effect_lanes;
+  if constexpr (kind.response.cohesion) effect_lanes.cohesion = cohesion_lanes<Lanes>(*effects);
   WallLanes at_walls;
   if constexpr (walls) {
     measure_walls(system, group, to.bodies, at_walls);
@@ -238,11 +239,13 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     if constexpr (kind.meets == Meets::round_parts) {
       found = geometry_of_round_parts(group, s, used);
     } else if constexpr (kind.meets == Meets::ellipses) {
-      found = geometry_of_ellipses(group, s, used, alive);
+      found = geometry_of_ellipses<kind.response.cohesion>(group, s, used, alive, effects);
     } else {
       found = geometry_of_enlarged_ellipses(group, s, used);
     }
   }
+  if constexpr (kind.response.cohesion)
+    found.touch = used & negative(Lanes{} - (found.overlap + effect_lanes.cohesion.range));
   ContactChanges<Lanes> at;
   if (!begin_and_end(found.touch, numbers.now, group.since, at, sums)) {
     if (outward) give_nothing<true>(group.j, to, outward);
@@ -272,11 +275,20 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     slip_dashpot = dt * column<Lanes>(group, PartGroup::tangential_damping) * square_root(1 / levers.at_rim);
   const ContactMemory<Lanes> before{column<Lanes>(group, PartGroup::impulse),
                                     column<Lanes>(group, PartGroup::tangential_impulse),
-                                    column<Lanes>(group, PartGroup::stretch)};
+                                    column<Lanes>(group, PartGroup::stretch),
+                                    {}};
   ContactMemory<Lanes> memory = before;
+  Lanes couple_before{};
+  if constexpr (kind.response.rolling) {
+    const auto lever = load<Lanes>(effects->lever);
+    const Lanes turning = kind.response.verlet ? s.spin_j - s.spin_i : s.middle_spin_j - s.middle_spin_i;
+    effect_lanes.rolling = rolling_lanes(*effects, lever * turning, dt);
+    memory.rolling = rolling_memory<Lanes>(*effects);
+    couple_before = lever * memory.rolling.impulse;
+  }
   const ContactLosses<Lanes> losses =
       respond<Law, kind.response>(law_of<kind>(numbers, group), dt * column<Lanes>(group, PartGroup::dashpot),
-                                  slip_dashpot, motion, at, dt, memory);
+                                  slip_dashpot, motion, at, dt, effect_lanes, memory);
   add_losses<kind.response>(losses, at.any, sums);
   const Vectors<Lanes> n = found.normal, t = perpendicular(n);
   Vectors<Lanes> push = memory.impulse * n;
@@ -285,6 +297,13 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     push = push + memory.tangential * t;
     torque_i += memory.tangential * levers.along_i;
     torque_j += memory.tangential * levers.along_j;
+  }
+  Lanes couple{};
+  if constexpr (kind.response.rolling) {
+    couple = load<Lanes>(effects->lever) * memory.rolling.impulse;
+    torque_i += couple;
+    torque_j += couple;
+    store(memory.rolling, *effects);
   }
   push = {only(at.touch, push.x), only(at.touch, push.y)};
   if constexpr (walls) {
@@ -295,13 +314,15 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
           before.impulse * normal_before + before.tangential * perpendicular(normal_before);
       acts = at.touch | at.ended;
       kicks = {0.5 * (kicks.x + only(at.alive, kicks_before.x)), 0.5 * (kicks.y + only(at.alive, kicks_before.y))};
+      couple = 0.5 * (couple + only(at.alive, couple_before));
       arms = choose(at.ended, vectors<Lanes>(group, PartGroup::arm_i_x, PartGroup::arm_i_y), arms);
     }
     std::int64_t which[lanes_of_pairs];
-    PairLanes on_walls[2], to_points[2];
+    PairLanes on_walls[3], to_points[2];
     store(acts, which);
     store(kicks.x, on_walls[0]);
     store(kicks.y, on_walls[1]);
+    store(couple, on_walls[2]);
     store(arms.x, to_points[0]);
     store(arms.y, to_points[1]);
     push_walls<verlet>(system, group, to.bodies, which, on_walls, to_points, block);
@@ -347,18 +368,20 @@ template <class Law, PartLoopKind kind>
 template <class Lanes>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
   const PairLaw law = system.contacts.near_parts.law.value_or(PairLaw{});
-  const PartLoopNumbers<Lanes> numbers{
-      law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
-                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), system.dt()),
-      system.dt(), system.step + (kind.response.verlet ? 0 : 1), system.contacts.near.record};
+  const PartLoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
+                                        spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
+                                                     all<Lanes>(1 / law.tangential_stiffness), system.dt())},
+                                       system.dt(),
+                                       system.step + (kind.response.verlet ? 0 : 1),
+                                       system.contacts.near.record};
   LaneSums<Lanes> sums;
   const bool shapes = !system.shapes.parts.empty();
   const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),
                      shapes ? system.shapes.body_of_part.data() : nullptr};
   BodyImpulse *outward = list.outward.impulses.data(), *none = nullptr;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
-    collide_group<Law, kind>(numbers, system, to, list.groups[g], g < list.first_outward ? none : outward, sums,
-                             system.bodies.sums[block]);
+    collide_group<Law, kind>(numbers, system, to, list.groups[g], effects_at<kind.response>(list.effects.data(), g),
+                             g < list.first_outward ? none : outward, sums, system.bodies.sums[block]);
   }
   add(sums, system.bodies.sums[block]);
 }
@@ -370,6 +393,8 @@ NearParts::Loop choose_part_loop() {
 
 template <class Law, Meets meets, bool verlet>
 NearParts::Loop choose_part_loop(const GrainSystem& system) {
+  if constexpr (meets != Meets::enlarged_ellipses)
+    if (system.has_effects()) return choose_part_loop<Law, meets, with_effects<verlet>>();
   if constexpr (meets == Meets::round_parts || meets == Meets::ellipses) {
     if (system.friction && system.contacts.near_parts.law)
       return choose_part_loop<Law, meets, ResponseKind{true, verlet, true, false}>();

@@ -17,13 +17,15 @@
 
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/effect_lanes.hpp"
+#include "equidem/grains/kernels/resist.hpp"
 
 namespace equidem::eight {
 
 template <class Lanes>
 struct LaneSums {
-  /// Losses: normal dashpot, slip, tangential dashpot. Summed contact by contact, so that pairs apart do not change the
-  /// result.
+  /// Losses: normal dashpot, slip, tangential dashpot, rolling. Summed contact by contact, so that pairs apart do not
+  /// change the result.
   Row<Lanes> lost{};
   double without_friction = 0;  ///< losses of normal dashpots in loops without friction
   double released = 0;          ///< by contacts that ended
@@ -44,6 +46,7 @@ EQUIDEM_ALWAYS_INLINE void add(const LaneSums<Lanes>& sums, BlockSums& block) {
   block.lost.lost_dashpot += lost[0] + sums.without_friction;
   block.lost.lost_slip += lost[1];
   block.lost.lost_tangential_dashpot += lost[2];
+  block.lost.lost_rolling += lost[3];
   block.lost.lost_release += sums.released;
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     block.evaluations += evaluations[k];
@@ -55,81 +58,10 @@ EQUIDEM_ALWAYS_INLINE void add(const LaneSums<Lanes>& sums, BlockSums& block) {
 /// Constants of the laws of eight contacts.
 template <class Lanes>
 struct LawLanes {
-  Lanes stiffness;    ///< times dt
-  Lanes least;        ///< as in PairLaw
-  Lanes friction;     ///< mu
-  Lanes half_spring;  ///< k_T/2, N/m
-  Lanes spring;       ///< k_T dt, N s/m
-  Lanes rate;         ///< k_T dt²/2, kg
-  Lanes slack;        ///< 1/(k_T dt), m/(N s); finite without a spring, too
+  Lanes stiffness;  ///< times dt
+  Lanes least;      ///< as in PairLaw
+  SpringLanes<Lanes> slip;
 };
-
-/// \param tangential k_T, N/m
-/// \param compliance 1/k_T, m/N
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_lanes(const Lanes& stiffness, const Lanes& least, const Lanes& friction,
-                                                const Lanes& tangential, const Lanes& compliance, double dt) {
-  return {dt * stiffness,       least, friction, 0.5 * tangential, dt * tangential, (0.5 * dt * dt) * tangential,
-          (1 / dt) * compliance};
-}
-
-template <class Lanes>
-struct Tangent {
-  Lanes impulse, stretch, slip_loss, dashpot_loss;
-  Bits<Lanes> slides;
-};
-
-/// sliding_step (verlet) and sliding_step_midpoint for contacts that have a spring, or no friction.
-/// \tparam equal all have a spring
-/// \param dashpot times dt, kg
-/// \param velocity slip at the start of the step; midpoint rule: with half the change by other forces
-/// \param mean_slip Verlet schemes: mean over the drift before, which stretches the spring
-/// \param mobility midpoint rule: mean velocity per impulse, 1/kg
-/// \param before Verlet schemes: impulse on j in the last step
-/// \param yield largest impulse of friction
-/// \return the impulse is that on i
-template <bool verlet, bool equal, class Lanes>
-EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide(const LawLanes<Lanes>& law, const Lanes& dashpot, const Lanes& stretch,
-                                           const Lanes& velocity, const Lanes& mean_slip, const Lanes& mobility,
-                                           const Lanes& before, const Lanes& yield, double dt) {
-  Lanes resistance, mean = velocity;
-  if constexpr (!verlet) {
-    const Lanes rate = law.rate + dashpot;
-    resistance = (law.spring * stretch + rate * velocity) * (1 / (1 + mobility * rate));
-  } else {
-    resistance = law.spring * (stretch + mean_slip * dt) + dashpot * velocity;
-  }
-  const Bits<Lanes> slides = negative(yield - magnitude(resistance));
-  const Lanes friction = equal ? within(resistance, yield) : choose(slides, with_sign(yield, resistance), resistance);
-  if constexpr (!verlet) mean = velocity - mobility * friction;
-  const Lanes moved = stretch + (verlet ? mean_slip : mean) * dt;
-  Lanes end = choose(slides, within(moved, yield * law.slack), moved);
-  if constexpr (!equal) end = only(negative(Lanes{} - law.spring), end);
-  const Lanes released = law.half_spring * (stretch - end) * (stretch + end);
-  if constexpr (!verlet) {
-    const Lanes dragged = only(~slides, dashpot * mean);
-    return {friction, end, only(slides, friction * mean + released), dragged * mean, slides};
-  }
-  // half of the kicks before and after the drift, less the energy stored in the spring
-  const Lanes loss = 0.5 * mean_slip * (friction - before) + released;
-  return {friction, end, only(slides, loss), only(~slides & negative(Lanes{} - dashpot), loss), slides};
-}
-
-/// Losses of the tangential law in the drift in which contacts begin, where their first kick does half its work.
-template <class Lanes>
-struct FirstSlip {
-  Lanes slip_loss, dashpot_loss;
-};
-
-/// \param drag impulse of the dashpot \param tangential impulse on j
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE FirstSlip<Lanes> first_slip_of(const LawLanes<Lanes>& law, const Tangent<Lanes>& tangent,
-                                                     const Lanes& drag, const Lanes& tangential, const Lanes& mean_slip,
-                                                     const Bits<Lanes>& begun) {
-  const Lanes stored = law.half_spring * tangent.stretch * tangent.stretch;
-  return {only(begun & tangent.slides, -(0.5 * tangential * mean_slip + stored)),
-          only(begun & ~tangent.slides, 0.5 * drag * mean_slip)};
-}
 
 /// Losses of normal dashpots in the drift in which contacts begin or end, with one kick of the two. Where a dashpot has
 /// cut the force before the end it takes what the spring holds, k d^(p + 1)/(p + 1).
@@ -144,14 +76,6 @@ EQUIDEM_ALWAYS_INLINE Lanes normal_loss_at_ends(const Bits<Lanes>& begun, const 
                             elastic_before * deep_before / ((1 + Law::facts.spring_power) * dt));
   return only(begun, 0.5 * mean_closing * viscous) + only(ended, last);
 }
-
-/// Compile-time properties of a response.
-struct ResponseKind {
-  bool friction = false;
-  bool verlet = false;
-  bool equal = false;    ///< one law for all contacts, with a tangential spring where there is friction
-  bool bounded = false;  ///< numbers of contacts apart are finite, and their law is equal: they give zeros unmasked
-};
 
 /// What the response needs of the geometry and the motion of contacts. Speeds are those of j or of the wall relative to
 /// i, at the contact point: closing ones positive, slips along perpendicular(normal).
@@ -177,88 +101,64 @@ struct ContactMemory {
   Lanes impulse;     ///< normal, N s
   Lanes tangential;  ///< on j, N s
   Lanes stretch;     ///< of the tangential spring, m
-};
-
-/// Which contacts act, begin and end in a step.
-template <class Lanes>
-struct ContactChanges {
-  Bits<Lanes> touch, alive, begun, ended;
-  bool any;    ///< some contact begins or ends
-  bool first;  ///< first step of the simulation: where the contacts were before is not known
+  RollingMemory<Lanes> rolling;
 };
 
 template <class Lanes>
 struct ContactLosses {
-  Lanes normal, slip, dashpot, released;  ///< J; the last is what the tangential springs of ended contacts held
+  Lanes normal, slip, dashpot, rolling, released;  ///< J; the last is what the springs of ended contacts held
 };
 
 /// \param dashpot normal, times dt, kg; hertz: kg/m^(1/4)
 /// \param slip_dashpot tangential, times dt, kg
+/// \param effects read where the kind has some
 /// \param[in,out] memory of the contacts
-///
-/// Other torques and forces of a contact (rolling resistance, cohesion) belong here: a member of LawLanes for their
-/// constants, one of ContactMemory for their state, one of ContactLosses for the ledger.
 template <class Law, ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, const Lanes& dashpot,
                                                    const Lanes& slip_dashpot, const ContactMotion<Lanes>& motion,
-                                                   const ContactChanges<Lanes>& at, double dt,
-                                                   ContactMemory<Lanes>& memory) {
+                                                   const ContactChanges<Lanes>& near, double dt,
+                                                   const EffectLanes<Lanes>& effects, ContactMemory<Lanes>& memory) {
   const Lanes zero{};
+  ContactLosses<Lanes> losses{};
+  ContactChanges<Lanes> at = near;
+  Lanes before = memory.impulse;  // of spring and dashpot
+  if constexpr (kind.cohesion) {
+    at = pressing<kind>(near, motion);
+    before += only(near.alive, effects.cohesion.attraction);
+  }
   const Bits<Lanes>& touch = at.touch;
   const Lanes deep = only(touch, motion.overlap);
   const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * motion.closing;
   const Lanes impulse = only(touch, larger(law.least, elastic + drag));  // in this order a NaN persists
-  ContactLosses<Lanes> losses{};
+  Lanes sum = impulse;
+  if constexpr (kind.cohesion) sum -= only(near.touch, effects.cohesion.attraction);
   if constexpr (kind.verlet) {
     const Lanes elastic_before = Law::spring(law.stiffness, motion.overlap_before);
     losses.normal =
-        only(touch & at.alive, 0.5 * motion.mean_closing * ((memory.impulse - elastic_before) + (impulse - elastic)));
+        only(touch & at.alive, 0.5 * motion.mean_closing * ((before - elastic_before) + (impulse - elastic)));
     if (at.any) [[unlikely]]
-      losses.normal += normal_loss_at_ends<Law>(at.begun, at.ended, motion.mean_closing, impulse - elastic,
-                                                memory.impulse, elastic_before, motion.overlap_before, dt);
+      losses.normal += normal_loss_at_ends<Law>(at.begun, at.ended, motion.mean_closing, impulse - elastic, before,
+                                                elastic_before, motion.overlap_before, dt);
   } else {
-    const Lanes mean_closing = motion.half_mobility * (memory.impulse - impulse) + motion.middle_closing;
+    const Lanes mean_closing = motion.half_mobility * (memory.impulse - sum) + motion.middle_closing;
     losses.normal = (impulse - elastic) * mean_closing;
     if constexpr (!kind.bounded) losses.normal = only(touch, losses.normal);
   }
-  memory.impulse = impulse;
+  memory.impulse = sum;
   if constexpr (kind.friction) {
-    Lanes stretch = memory.stretch, velocity = motion.slip;
-    if constexpr (kind.verlet) {
-      if (at.any || at.first)
-          [[unlikely]]  // its place before is not known: the slip at the instant is that of the step
-        stretch += only(at.first ? touch : at.begun, (velocity - motion.mean_slip) * dt);
-    } else {
-      velocity -= motion.mobility * memory.tangential;  // without this contact's own part in it
+    const Lanes carried = larger(impulse, zero);
+    const SpringLosses<Lanes> slip =
+        resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility,
+                     law.slip.friction * carried, at, dt, memory.tangential, memory.stretch);
+    losses.slip = slip.slip;
+    losses.dashpot = slip.dashpot;
+    losses.released = slip.released;
+    if constexpr (kind.rolling) {
+      const SpringLosses<Lanes> rolling = roll<kind>(effects.rolling, carried, at, dt, memory.rolling);
+      losses.rolling = rolling.slip + rolling.dashpot;
+      losses.released += rolling.released;
     }
-    const Lanes yield = law.friction * larger(impulse, zero);
-    Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, motion.mean_slip,
-                                                            motion.mobility, memory.tangential, yield, dt);
-    if constexpr (!kind.bounded) {
-      tangent.impulse = only(touch, tangent.impulse);
-      tangent.stretch = only(touch, tangent.stretch);
-    }
-    const Lanes tangential = -tangent.impulse;
-    if (at.any || !kind.bounded) {
-      const Bits<Lanes> lasting = kind.verlet ? touch & at.alive : touch;
-      tangent.slip_loss = only(lasting, tangent.slip_loss);
-      tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
-    }
-    if (at.any) [[unlikely]] {
-      losses.released = law.half_spring * stretch * stretch;
-      if constexpr (kind.verlet) {
-        const FirstSlip<Lanes> first =
-            first_slip_of(law, tangent, slip_dashpot * velocity, tangential, motion.mean_slip, at.begun);
-        tangent.slip_loss += first.slip_loss;
-        tangent.dashpot_loss += first.dashpot_loss;
-        losses.released -= 0.5 * memory.tangential * motion.mean_slip;
-      }
-      losses.released = only(at.ended, losses.released);
-    }
-    losses.slip = tangent.slip_loss;
-    losses.dashpot = tangent.dashpot_loss;
-    memory.tangential = tangential;
-    memory.stretch = tangent.stretch;
+    if constexpr (kind.cohesion) losses.released += lost_at_range<kind>(effects.cohesion, motion, near, dt);
   } else {
     memory.tangential = zero;  // the friction of an earlier stage may have left one
   }
@@ -269,10 +169,10 @@ EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, c
 template <ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void add_losses(const ContactLosses<Lanes>& losses, bool changes, LaneSums<Lanes>& sums) {
   if constexpr (kind.friction) {
-    if (changes) [[unlikely]]
+    if (changes || kind.cohesion) [[unlikely]]
       sums.released = add_up(losses.released, sums.released);
     Row<Lanes> row[8];
-    rows_of(losses.normal, losses.slip, losses.dashpot, Lanes{}, row);
+    rows_of(losses.normal, losses.slip, losses.dashpot, kind.rolling ? losses.rolling : Lanes{}, row);
     for (const Row<Lanes>& lost : row) sums.lost += lost;
   } else {
     sums.without_friction = add_up(losses.normal, sums.without_friction);

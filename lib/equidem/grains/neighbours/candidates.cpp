@@ -123,6 +123,15 @@ ContactConstants constants_of(const GrainSystem& system, std::int32_t i, std::in
   return constants;
 }
 
+EffectConstants effects_between(const GrainSystem& system, std::int32_t i, std::int32_t j, double stiffness) {
+  const PairProperties& pair = system.properties(i, j);
+  return {.rolling_friction = pair.rolling_friction,
+          .rolling_stiffness = pair.rolling_ratio * stiffness * system.law().length_factor(system.length),
+          .rolling_damping = pair.rolling_damping,
+          .attraction = pair.cohesion,
+          .range = pair.cohesion_range};
+}
+
 namespace {
 
 /// The pairs of discs and the contacts of discs with walls of maps and simultaneous laws.
@@ -180,7 +189,7 @@ void find_candidates(GrainSystem& system) {
       circles.push_back({body.centre + system.cell.now.shift(image), body.radius});
     }
   }
-  const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin);
+  const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin + system.range);
   if (!gives_force(system.options.law)) find_single_contacts(system, list);
   find_near_walls(system);
   cover_joints(system);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/grains/contacts/contact_effects.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
@@ -31,6 +32,8 @@ struct alignas(64) ContactGroup {
 template <class Group>
 struct GroupList {
   LaneVector<Group> groups;
+  bool has_effects = false;            ///< which columns there are
+  LaneVector<ContactEffects> effects;  ///< of the groups
   std::size_t count = 0;
   OutwardImpulses outward;
   std::size_t first_outward = 0;  ///< first group with a body of a later block
@@ -42,7 +45,26 @@ struct GroupList {
   [[nodiscard]] std::int64_t& since(std::size_t p) { return group(p).since[p % lanes_of_pairs]; }
   [[nodiscard]] std::int64_t since(std::size_t p) const { return group(p).since[p % lanes_of_pairs]; }
   [[nodiscard]] bool touching(std::size_t p) const { return since(p) > ContactGroup::apart; }
-  [[nodiscard]] std::size_t bytes() const { return groups.capacity() * sizeof(Group) + outward.bytes(); }
+  [[nodiscard]] ContactEffects& effects_of(std::size_t p) { return effects[p / lanes_of_pairs]; }
+  [[nodiscard]] const ContactEffects& effects_of(std::size_t p) const { return effects[p / lanes_of_pairs]; }
+  [[nodiscard]] std::size_t bytes() const {
+    return groups.capacity() * sizeof(Group) + effects.capacity() * sizeof(ContactEffects) + outward.bytes();
+  }
+
+ protected:
+  /// Room for contacts as in an earlier list.
+  void make_room(const GroupList& before) {
+    has_effects = before.has_effects;
+    const std::size_t room = before.groups.size() + before.groups.size() / 16 + 8;
+    groups.reserve(room);
+    if (has_effects) effects.reserve(room);
+    first_outward = std::numeric_limits<std::size_t>::max();
+  }
+  void add_columns() {
+    groups.emplace_back();
+    if (has_effects) effects.push_back({});
+  }
+  void copy_effects(const GroupList& other, std::size_t from, std::size_t to);
 };
 
 /// Copy a lane of all columns of eight numbers, from the given one on.
@@ -54,6 +76,11 @@ void copy_lane(const Columns& from, std::size_t from_lane, Columns& to, std::siz
   for (std::size_t column = first * sizeof(PairLanes); column < sizeof(Columns); column += sizeof(PairLanes))
     std::memcpy(target + column + to_lane * sizeof(double), source + column + from_lane * sizeof(double),
                 sizeof(double));
+}
+
+template <class Group>
+void GroupList<Group>::copy_effects(const GroupList& other, std::size_t from, std::size_t to) {
+  if (has_effects) copy_lane(other.effects_of(from), from % lanes_of_pairs, effects_of(to), to % lanes_of_pairs);
 }
 
 /// A list as it comes to be, from contacts of the list before and from new ones. The list has

@@ -39,6 +39,7 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
 NewList<PairBlock> new_list(const GrainSystem& system, PairBlock& block, std::size_t b) {
   block.friction = system.friction;
   block.equal = system.contacts.near.equal;
+  block.has_effects = system.has_effects();
   return {block, system.bodies.blocks.end(b), nullptr};
 }
 
@@ -60,6 +61,9 @@ void set_constants(const GrainSystem& system, PairBlock& block, std::size_t p) {
     slips.dashpot[k] = constants.sliding.dashpot * system.dt();
     slips.stretch[k] = slips.impulse[k] = 0;
   }
+  if (block.has_effects)
+    block.effects.back().set(k, effects_between(system, i, j, constants.stiffness),
+                             {bi.radius, bj.radius, bi.inverse_moment, bj.inverse_moment}, system.dt());
   if (block.equal) return;
   const PairLaw law = law_of(constants);
   PairLaws& laws = block.laws.back();
@@ -88,7 +92,7 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(blocks.begin(b)));
   for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
     const Vec2 centre = system.bodies.motions[i].position;
-    const double own = system.bodies.constants[i].radius + near.margin;
+    const double own = system.bodies.constants[i].radius + near.margin + system.range;
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
       const std::int32_t partner = list.partner[p];
       if (system.cell.active ? is_bonded_image(system, static_cast<std::int32_t>(i), partner)
@@ -115,17 +119,16 @@ PairBlock PairBlock::emptied() {
   *this = {};
   friction = before.friction;
   equal = before.equal;
-  const std::size_t room = before.groups.size() + before.groups.size() / 16 + 8;
-  groups.reserve(room);
+  make_room(before);
+  const std::size_t room = groups.capacity();
   if (friction) slips.reserve(room);
   if (!equal) laws.reserve(room);
   if (!before.records.empty()) records.reserve(room);
-  first_outward = std::numeric_limits<std::size_t>::max();
   return before;
 }
 
 void PairBlock::add_group() {
-  groups.emplace_back();
+  add_columns();
   std::fill_n(groups.back().reach, lanes_of_pairs, -1.0);
   if (friction) slips.emplace_back();
   if (!equal) laws.emplace_back();
@@ -138,6 +141,7 @@ void PairBlock::copy(const PairBlock& other, std::size_t from, std::size_t to) {
   copy_lane(other.groups[g], k, group(to), lane, numbers);
   if (friction) copy_lane(other.slips[g], k, slips[to / lanes_of_pairs], lane);
   if (!equal) copy_lane(other.laws[g], k, laws[to / lanes_of_pairs], lane);
+  copy_effects(other, from, to);
   if (!records.empty()) copy_lane(other.records[g], k, records[to / lanes_of_pairs], lane);
 }
 
@@ -158,7 +162,7 @@ std::optional<PairLaw> common_law(const GrainSystem& system) {
     const bool plain = pair->stiffness > 0 && (!system.friction || pair->friction > 0);
     return plain && *pair == *pairs[0];
   });
-  if (!equal || system.bodies.constants.size() < 2) return {};
+  if (!equal || system.has_effects() || system.bodies.constants.size() < 2) return {};
   return law_of(constants_of(system, 0, 1));
 }
 
@@ -222,7 +226,9 @@ void touch_near_pairs(GrainSystem& system) {
       const auto i = static_cast<std::size_t>(block.first(p));
       const auto j = static_cast<std::size_t>(system.body_of(block.second(p)));
       const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
-      if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
+      const double range = block.has_effects ? block.effects_of(p).range[p % lanes_of_pairs] : 0;
+      if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > -range))
+        continue;
       block.since(p) = system.step + (verlet ? 0 : 1);
       ++system.counters.contacts;
     }
@@ -237,6 +243,7 @@ ContactState state_of(const GrainSystem& system, const PairBlock& block, std::si
     state.stretch = block.slips[g].stretch[k];
     state.tangential_impulse = block.slips[g].impulse[k];
   }
+  if (block.has_effects) state.set_effects(block.effects[g], k);
   const double radius = system.bodies.constants[state.i].radius, sum = block.groups[g].reach[k];
   if (g < block.records.size()) {
     const PairRecords& records = block.records[g];
@@ -253,6 +260,27 @@ ContactState state_of(const GrainSystem& system, const PairBlock& block, std::si
   }
   resolve_image(system, state);
   return state;
+}
+
+std::pair<double, double> effects_of_near_pairs(const GrainSystem& system) {
+  const std::vector<PairBlock>& blocks = system.contacts.near.blocks;
+  if (blocks.empty() || !system.has_effects()) return {};
+  const auto place_of = [&](std::int32_t j) {
+    return system.position_of(j) - system.lag() * system.bodies.motions[system.body_of(j)].velocity;
+  };
+  return system.bodies.blocks.sum([&](std::size_t b) {
+    const PairBlock& block = blocks[b];
+    double rolling = 0, cohesion = 0;
+    for (std::size_t p = 0; p < block.count; ++p) {
+      if (!block.touching(p)) continue;
+      const std::size_t k = p % lanes_of_pairs;
+      const ContactEffects& effects = block.effects_of(p);
+      rolling += effects.elastic(k);
+      const double distance = norm(place_of(block.second(p)) - place_of(block.first(p)));
+      cohesion -= effects.attraction[k] / system.dt() * (block.group(p).reach[k] - distance + effects.range[k]);
+    }
+    return std::pair(rolling, cohesion);
+  });
 }
 
 void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
@@ -274,6 +302,7 @@ void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
       records.closing[k] = contact->closing;
       records.normal_x[k] = contact->normal.x;
       records.normal_y[k] = contact->normal.y;
+      if (block.has_effects) block.effects.back().set_state(k, contact->rolling_stretch, contact->rolling_impulse);
       if (!system.friction) continue;
       block.slips.back().stretch[k] = contact->stretch;
       block.slips.back().impulse[k] = contact->tangential_impulse;

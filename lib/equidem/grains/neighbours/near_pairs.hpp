@@ -128,6 +128,9 @@ ContactState state_of(const GrainSystem& system, const PairBlock& block, std::si
 /// Energies of the normal and the tangential springs of the pairs at the present positions, J.
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
 
+/// Energies of rolling and of cohesion of the pairs, J, the latter at the time of the velocities.
+std::pair<double, double> effects_of_near_pairs(const GrainSystem& system);
+
 /// Replace the pairs by these contacts; j may be an image.
 void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts);
 

@@ -55,6 +55,7 @@ namespace {
 using PartColumn = PartGroup::Column;
 
 NewList<NearParts::List> new_list(const GrainSystem& system, NearParts::List& list, std::size_t b) {
+  list.has_effects = system.has_effects();
   if (list.of_walls) return {list, NewList<NearParts::List>::nothing(), nullptr};
   return {list, system.bodies.blocks.end(b), &system.shapes.body_of_part};
 }
@@ -76,6 +77,16 @@ void set_constants(const GrainSystem& system, NearParts::List& list, std::size_t
   set(PartGroup::tangential_damping, constants.tangential_damping);
   set(PartGroup::normal_x, apart.x);
   set(PartGroup::normal_y, apart.y);
+  const auto radius_of = [&](std::int32_t body, std::int32_t part) {
+    return system.shapes.parts.empty() ? system.bodies.constants[body].radius : system.shapes.parts[part].size;
+  };
+  if (list.has_effects)
+    list.effects_of(p).set(
+        p % lanes_of_pairs, effects_between(system, of.i, of.j, constants.stiffness),
+        {radius_of(of.i, of.part_i),
+         of.j < 0 ? std::numeric_limits<double>::infinity() : radius_of(system.body_of(of.j), of.part_j),
+         body_i.inverse_moment, of.j < 0 ? 0 : system.bodies.constants[system.body_of(of.j)].inverse_moment},
+        system.dt());
   if (list.of_walls) return;
   const GrainPart &part_i = system.shapes.parts[of.part_i], &part_j = system.shapes.parts[of.part_j];
   const GrainBody& body_j = system.bodies.constants[system.body_of(of.j)];
@@ -99,6 +110,8 @@ void set_state(const GrainSystem& system, NearParts::List& list, std::size_t p, 
   set(PartGroup::impulse, contact.impulse);
   set(PartGroup::tangential_impulse, contact.tangential_impulse);
   set(PartGroup::stretch, contact.stretch);
+  if (list.has_effects)
+    list.effects_of(p).set_state(p % lanes_of_pairs, contact.rolling_stretch, contact.rolling_impulse);
   set(PartGroup::overlap, contact.overlap);
   set(PartGroup::closing, contact.closing);
   // of discs it is not saved
@@ -178,6 +191,7 @@ std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
 /// All but pairs of whole discs.
 void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<NearParts::Close>& close) {
   const NeighbourList& neighbours = *system.contacts.near.outer;
+  const double farthest = system.contacts.margin + system.range;
   close.clear();
   for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
     const auto body = static_cast<std::int32_t>(i);
@@ -191,8 +205,8 @@ void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<
         const auto j = static_cast<std::size_t>(partner);
         for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
           NearParts::Close pair{p, q, 0, {}};
-          pair.clear = gap_of(system, p, q, system.contacts.margin, pair.apart);
-          if (pair.clear <= system.contacts.margin) close.push_back(pair);
+          pair.clear = gap_of(system, p, q, farthest, pair.apart);
+          if (pair.clear <= farthest) close.push_back(pair);
         }
       }
     }
@@ -202,10 +216,11 @@ void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<
 /// Those of the close parts of a block that are nearer than the margin.
 void find_nearest_parts(const GrainSystem& system, std::size_t b, NearParts::Block& block) {
   const NearParts& near = system.contacts.near_parts;
+  const double farthest = near.margin + system.range;
   std::array<NewList<NearParts::List>, 2> lists{new_list(system, block.lists[0], b),
                                                 new_list(system, block.lists[1], b)};
   for (NearParts::Close& pair : block.close) {
-    if (pair.clear - 2 * near.travelled > near.margin) continue;
+    if (pair.clear - 2 * near.travelled > farthest) continue;
     const std::size_t l = list_of(system, pair.i, pair.j);
     NewList<NearParts::List>& list = lists[l];
     if (list.keep_contact(pair.i, pair.j)) continue;
@@ -214,9 +229,9 @@ void find_nearest_parts(const GrainSystem& system, std::size_t b, NearParts::Blo
       const Vec2 apart{list.old().number(before, PartGroup::normal_x), list.old().number(before, PartGroup::normal_y)};
       if (apart != Vec2{}) pair.apart = apart;
     }
-    const double gap = gap_of(system, pair.i, pair.j, near.margin, pair.apart);
+    const double gap = gap_of(system, pair.i, pair.j, farthest, pair.apart);
     pair.clear = gap + 2 * near.travelled;
-    const bool is_near = gap <= near.margin;
+    const bool is_near = gap <= farthest;
     if (!list.leave(is_near) && is_near) set_constants(system, block.lists[l], list.add(pair.i, pair.j), pair.apart);
   }
   for (NewList<NearParts::List>& list : lists) list.keep_others();
@@ -253,25 +268,26 @@ NearParts::List NearParts::List::emptied() {
   List before = std::move(*this);
   *this = {};
   of_walls = before.of_walls;
-  groups.reserve(before.groups.size() + before.groups.size() / 16 + 8);
-  first_outward = std::numeric_limits<std::size_t>::max();
+  make_room(before);
   return before;
 }
 
 void NearParts::List::add_group() {
-  groups.emplace_back();
+  add_columns();
   std::fill_n(&groups.back().numbers[0][0], PartGroup::columns * lanes_of_pairs, 1.0);  // anything to divide by
 }
 
 void NearParts::List::copy(const List& other, std::size_t from, std::size_t to) {
   copy_lane(other.group(from), from % lanes_of_pairs, group(to), to % lanes_of_pairs,
             sizeof(ContactGroup) / sizeof(PairLanes) - 1);
+  copy_effects(other, from, to);
 }
 
 void NearParts::List::end(std::size_t p) {
   since(p) = ContactGroup::apart;
   for (const auto column : {PartGroup::impulse, PartGroup::tangential_impulse, PartGroup::stretch})
     number(p, column) = 0;
+  if (has_effects) effects_of(p).set_state(p % lanes_of_pairs, 0, 0);
 }
 
 void NearParts::List::move_state(std::size_t from, std::size_t to) {
@@ -280,6 +296,11 @@ void NearParts::List::move_state(std::size_t from, std::size_t to) {
   for (const auto column :
        {impulse, tangential_impulse, stretch, normal_x, normal_y, overlap, closing, arm_i_x, arm_i_y})
     number(to, column) = number(from, column);
+  if (has_effects) {
+    const ContactEffects& state = effects_of(from);
+    const std::size_t k = from % lanes_of_pairs;
+    effects_of(to).set_state(to % lanes_of_pairs, state.stretch[k], state.impulse[k]);
+  }
   end(from);
 }
 
@@ -350,7 +371,7 @@ bool is_near_wall(const GrainSystem& system, std::size_t body, const GrainPart& 
   const WallContact contact =
       nearest(wall, system.walls.places[w].displacement, system.bodies.motions[body].position + offset_of(part, axis));
   const double reach = wall.shape == Wall::Shape::line ? support({part.a, part.b, axis}, contact.normal).reach : part.a;
-  return contact.distance <= reach + system.contacts.margin;
+  return contact.distance <= reach + system.contacts.margin + system.range;
 }
 
 void find_walls_of_block(const GrainSystem& system, NearParts::List& list, std::size_t block) {
@@ -360,12 +381,13 @@ void find_walls_of_block(const GrainSystem& system, NearParts::List& list, std::
     if (!walls.keep_contact(i, j) && !walls.leave(true)) set_constants(system, list, walls.add(i, j), {});
   };
   const std::size_t count = system.scene.walls.size();
+  const double farthest = system.contacts.margin + system.range;
   std::vector<char> near(count);
   for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
     for (std::size_t w = 0; w < count; ++w) {
       const WallContact contact =
           nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
-      near[w] = contact.distance <= system.bodies.constants[i].radius + system.contacts.margin ? 1 : 0;
+      near[w] = contact.distance <= system.bodies.constants[i].radius + farthest ? 1 : 0;
       if (near[w] != 0 && system.shapes.parts.empty()) see(static_cast<std::int32_t>(i), w);
     }
     for (std::int32_t p = system.shapes.parts.empty() ? 0 : system.shapes.first_part[i];
@@ -438,12 +460,12 @@ Partners partners_of(const GrainSystem& system, const NearParts::List& list, std
 namespace {
 
 /// At the present positions.
-double overlap_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+PartGeometry geometry_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
   const Vec2 normal{list.number(p, PartGroup::normal_x), list.number(p, PartGroup::normal_y)};
   const bool touching = list.touching(p);
-  if (!list.of_walls) return geometry_of_parts(system, partners_of(system, list, p), touching, normal).overlap;
-  if (list.number(p, PartGroup::covered) != 0) return 0;
-  return geometry_with_wall(system, list.first(p), list.wall(p), touching ? normal : Vec2{}).overlap;
+  if (!list.of_walls) return geometry_of_parts(system, partners_of(system, list, p), touching, normal);
+  if (list.number(p, PartGroup::covered) != 0) return {.overlap = -std::numeric_limits<double>::max()};
+  return geometry_with_wall(system, list.first(p), list.wall(p), touching ? normal : Vec2{});
 }
 
 }  // namespace
@@ -451,7 +473,8 @@ double overlap_of(const GrainSystem& system, const NearParts::List& list, std::s
 void touch_near_parts(GrainSystem& system) {
   each_list(system.contacts, [&](NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
-      if (!(overlap_of(system, list, p) > 0)) continue;
+      const double range = list.has_effects ? list.effects_of(p).range[p % lanes_of_pairs] : 0;
+      if (!(geometry_of(system, list, p).overlap > -range)) continue;
       list.since(p) = system.step + (system.options.verlet() ? 0 : 1);
       list.number(p, PartGroup::normal_x) = list.number(p, PartGroup::normal_y) = 0;
       ++system.counters.contacts;
@@ -461,9 +484,29 @@ void touch_near_parts(GrainSystem& system) {
 
 std::pair<double, double> elastic_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
   const auto number = [&](PartColumn column) { return list.number(p, column); };
-  const double overlap = overlap_of(system, list, p), stretch = number(PartGroup::stretch);
+  const double overlap = geometry_of(system, list, p).overlap, stretch = number(PartGroup::stretch);
   return {overlap > 0 ? system.law().energy(number(PartGroup::stiffness), overlap) : 0,
           0.5 * number(PartGroup::tangential_stiffness) * stretch * stretch};
+}
+
+std::pair<double, double> effects_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  if (!list.has_effects || !list.touching(p)) return {};
+  const std::size_t k = p % lanes_of_pairs;
+  const ContactEffects& effects = list.effects_of(p);
+  const PartGeometry found = geometry_of(system, list, p);
+  const Partners of = partners_of(system, list, p);
+  const GrainMotion& i = system.bodies.motions[of.i];
+  GrainMotion j;
+  if (of.j < 0) {
+    j.velocity = system.walls.places[~of.j].passed_velocity;
+  } else {
+    j = system.bodies.motions[system.body_of(of.j)];
+  }
+  const Vec2 n = found.normal;
+  const double opening = dot(j.velocity - i.velocity, n) + j.spin * cross(found.arm_j, n) -
+                         i.spin * (of.j < 0 ? found.across_i : cross(found.arm_i, n));
+  const double depth = found.overlap + system.lag() * opening + effects.range[k];
+  return {effects.elastic(k), -effects.attraction[k] / system.dt() * depth};
 }
 
 void resolve_image(const GrainSystem& system, ContactState& state) {
@@ -492,6 +535,7 @@ ContactState state_of(const GrainSystem& system, const NearParts::List& list, st
                      .stretch = number(PartGroup::stretch),
                      .arm_i = vector(PartGroup::arm_i_x, PartGroup::arm_i_y),
                      .arm_j = vector(PartGroup::arm_j_x, PartGroup::arm_j_y)};
+  if (list.has_effects) state.set_effects(list.effects_of(p), p % lanes_of_pairs);
   resolve_image(system, state);
   return state;
 }

@@ -179,6 +179,9 @@ void resolve_image(const GrainSystem& system, ContactState& state);
 /// Energy of the normal spring of a contact at the present positions, and of its tangential spring, J.
 std::pair<double, double> elastic_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
 
+/// Likewise of rolling and of cohesion; the latter at the time of the velocities.
+std::pair<double, double> effects_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
+
 /// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 

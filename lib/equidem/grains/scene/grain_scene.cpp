@@ -98,7 +98,12 @@ constexpr Bound<Inertia> inertia_bounds[] = {{"mass", &Inertia::mass, Range::pos
 constexpr Bound<PairProperties> pair_bounds[] = {
     {"friction", &PairProperties::friction, Range::not_negative()},
     {"tangential_ratio", &PairProperties::tangential_ratio, Range::not_negative()},
-    {"tangential_damping", &PairProperties::tangential_damping, Range::not_negative()}};
+    {"tangential_damping", &PairProperties::tangential_damping, Range::not_negative()},
+    {"rolling_friction", &PairProperties::rolling_friction, Range::not_negative()},
+    {"rolling_ratio", &PairProperties::rolling_ratio, Range::not_negative()},
+    {"rolling_damping", &PairProperties::rolling_damping, Range::not_negative()},
+    {"cohesion", &PairProperties::cohesion, Range::not_negative()},
+    {"cohesion_range", &PairProperties::cohesion_range, Range::not_negative(), "m"}};
 constexpr Bound<GrainOptions> option_bounds[] = {
     {"time step", &GrainOptions::time_step, Range::positive(), "s"},
     {"reference length", &GrainOptions::reference_length, Range::not_negative(), "m"},
@@ -129,6 +134,29 @@ void check_grain(const GrainScene& scene, std::size_t i) {
   }
 }
 
+/// Rolling resistance and cohesion of a contact.
+void check_effects(const PairProperties& pair, const GrainOptions& options) {
+  if ((pair.rolling_ratio > 0 || pair.rolling_damping > 0) && !(pair.rolling_friction > 0))
+    bad_input("a rolling spring is given without rolling friction", "it would carry nothing",
+              "Give rolling_friction > 0");
+  if (pair.rolling_friction > 0 && !(pair.rolling_ratio > 0))
+    bad_input(fmt::format("rolling friction {} is given without a rolling spring", pair.rolling_friction),
+              "contacts stick by one", "Give rolling_ratio > 0, such as 2/7");
+  if ((pair.cohesion > 0) != (pair.cohesion_range > 0))
+    bad_input(
+        pair.cohesion > 0 ? "cohesion is given without its range" : "a range of cohesion is given without a force",
+        "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0");
+  if (!(pair.rolling_friction > 0) && !(pair.cohesion > 0)) return;
+  const char* what = pair.rolling_friction > 0 ? "rolling friction" : "cohesion";
+  if (!gives_force(options.law))
+    bad_input(fmt::format("{} is given with the law \"{}\"", what, to_string(options.law)),
+              "that law solves a contact by itself, without other forces of it",
+              "Use " + names_of_laws(LawKind::force));
+  if (options.ellipse_law == GrainOptions::EllipseLaw::enlarged)
+    bad_input(fmt::format("{} is given with the contact of enlarged ellipses", what),
+              "that contact knows no gap, and is for comparison alone", "Use the exact contact");
+}
+
 void check_pair(const PairProperties& pair, const GrainOptions& options) {
   if ((pair.stiffness != 0) == (pair.dimensionless != 0)) {
     bad_input(
@@ -148,6 +176,7 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
     bad_input("tangential damping is given without a tangential spring", "it is measured by that spring",
               "Give tangential_ratio > 0");
   }
+  check_effects(pair, options);
 }
 
 /// The range of the law, by a of the lightest bodies of every two kinds.

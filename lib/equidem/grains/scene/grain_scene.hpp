@@ -82,6 +82,12 @@ struct PairProperties {
   /// friction; with 0 other laws have contacts that always slide.
   double tangential_ratio = 0;
   double tangential_damping = 0;  ///< zeta_T: dashpot 2 zeta_T sqrt(m kT), m the effective tangential mass
+  // rolling and cohesion of laws that give a force: contacts/contact_effects.hpp
+  double rolling_friction = 0;  ///< mu_r
+  double rolling_ratio = 0;     ///< k_r/(kN R²), > 0 with rolling friction; hertz_dashpot: as tangential_ratio
+  double rolling_damping = 0;   ///< zeta_r: dashpot 2 zeta_r sqrt(I k_r), 1/I = 1/I_i + 1/I_j
+  double cohesion = 0;          ///< F_c, N
+  double cohesion_range = 0;    ///< largest gap at which it acts, m
   bool operator==(const PairProperties&) const = default;
 };
 
@@ -157,7 +163,8 @@ using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 
 /// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and
 ///         pairs that do not match, a table that is not symmetric, neither or both of stiffness and dimensionless,
-///         restitution out of range for the law, friction negative, velocity_verlet with a map, shapes as in
+///         restitution out of range for the law, friction negative, rolling or cohesion incomplete or with a law that
+///         gives no force, velocity_verlet with a map, shapes as in
 ///         grain_scene.hpp, the time step not positive, grains that start inside one another (centre within the other)
 ///         or with the centre behind a line
 /// \param where place of a grain in the user's input, for error messages; may be empty

@@ -143,6 +143,32 @@ void set_friction(const PairOptions& options, NormalLaw law, double tangential_z
                  "it is measured by that spring", "Give tangential_ratio > 0");
 }
 
+/// Rolling resistance, and cohesion. \param tangential_zeta as in set_friction
+void set_effects(const PairOptions& options, NormalLaw law, double tangential_zeta, PairProperties& properties) {
+  const bool rolling = options.rolling_friction > 0, cohesion = options.cohesion > 0;
+  if (!rolling && (options.rolling_ratio || options.rolling_damping))
+    bad_input_at(options.rolling_ratio ? "rolling_ratio" : "rolling_damping",
+                 "a rolling spring is given without rolling friction", "it would carry nothing",
+                 "Add rolling_friction > 0");
+  if (cohesion != (options.cohesion_range > 0))
+    bad_input_at(cohesion ? "cohesion" : "cohesion_range",
+                 cohesion ? "cohesion is given without its range" : "a range of cohesion is given without a force",
+                 "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0");
+  if (!rolling && !cohesion) return;
+  if (!gives_force(law))
+    bad_input_at(rolling ? "rolling_friction" : "cohesion",
+                 fmt::format("{} has no {}", describe(law).name, rolling ? "rolling resistance" : "cohesion"),
+                 "that law solves a contact by itself, without other forces of it",
+                 "Use " + names_of_laws(LawKind::force));
+  properties.cohesion = options.cohesion;
+  properties.cohesion_range = options.cohesion_range;
+  if (!rolling) return;
+  const double usual = properties.tangential_ratio > 0 ? properties.tangential_ratio : 2.0 / 7;
+  properties.rolling_friction = options.rolling_friction;
+  properties.rolling_ratio = options.rolling_ratio.value_or(usual);
+  properties.rolling_damping = options.rolling_damping.value_or(options.tangential_damping.value_or(tangential_zeta));
+}
+
 /// Sets stiffness, dimensionless or duration of a contact whose other properties are known.
 class StiffnessOf {
  public:
@@ -187,6 +213,7 @@ PairContact contact_of(const PairOptions& options, NormalLaw law, const MeetingB
   contact.properties.end = describe(law).usual_end;
   const double tangential_zeta = set_rebound(options.rebound, bodies, contact.properties);
   set_friction(options, law, tangential_zeta, contact.properties);
+  set_effects(options, law, tangential_zeta, contact.properties);
   check_restitution(law, contact.properties);
   std::visit(StiffnessOf(law, bodies, contact), options.stiffness);
   return contact;

@@ -77,6 +77,13 @@ struct PairOptions {
   std::optional<double> tangential_ratio = {};
   /// zeta of the tangential dashpot, with a tangential spring; none: 0, or with DashpotDamping its damping ratio.
   std::optional<double> tangential_damping = {};
+  double rolling_friction = 0;  ///< mu_r (contacts/contact_effects.hpp)
+  /// k_r/(kN R²) with rolling friction; none: as tangential_ratio, and 2/7 without friction.
+  std::optional<double> rolling_ratio = {};
+  /// zeta of the rolling dashpot, with rolling friction; none: as tangential_damping.
+  std::optional<double> rolling_damping = {};
+  double cohesion = 0;        ///< N, for discs per metre of depth
+  double cohesion_range = 0;  ///< m
 };
 
 /// Data of the two kinds of bodies in contact.

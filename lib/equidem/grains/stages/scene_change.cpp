@@ -58,8 +58,9 @@ struct PastImpulses {
   void add(const ContactState& contact, double factor, std::optional<std::int32_t> i, std::optional<std::int32_t> j) {
     const Vec2 on_j =
         factor * (contact.impulse * contact.normal + contact.tangential_impulse * perpendicular(contact.normal));
-    add(i, -on_j, -cross(contact.arm_i, on_j));
-    if (j && *j >= 0) add(j, on_j, cross(contact.arm_j, on_j));
+    const double rolling = factor * contact.lever * contact.rolling_impulse;
+    add(i, -on_j, -cross(contact.arm_i, on_j) - rolling);
+    if (j && *j >= 0) add(j, on_j, cross(contact.arm_j, on_j) + rolling);
   }
 };
 
@@ -143,6 +144,7 @@ void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Pl
       contact.j = *j;
       // without friction there is no spring; later friction begins anew
       if (!has_friction(own, *i, *j)) contact.stretch = 0;
+      if (!(own.properties(*i, *j).rolling_friction > 0)) contact.rolling_stretch = 0;
       kept.push_back(contact);
     }
   }

@@ -237,6 +237,13 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
       if (pair.friction > 0) {
         add(model.found, friction_levers, fmt::format("with the coefficient {:.6g}", pair.friction));
       }
+      if (pair.rolling_friction > 0) {
+        add(model.found, rolling, fmt::format("with the coefficient {:.6g}", pair.rolling_friction));
+        if (pair.rolling_damping > 0 && !equal) add(model.found, other_laws, "rolling_damping of unequal bodies");
+      }
+      if (pair.cohesion > 0)
+        add(model.found, other_laws,
+            fmt::format("cohesion of {:.6g} within {:.6g} m", pair.cohesion, pair.cohesion_range));
       if (first == nullptr) first = &pair;
       differ = differ || !(pair == *first);
     }

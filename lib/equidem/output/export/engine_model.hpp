@@ -51,6 +51,7 @@ enum class EngineFeature {
   other_laws,
   dashpots,
   friction_levers,
+  rolling,
 };
 
 /// A row of the table.
@@ -111,6 +112,8 @@ struct EnumNames<EngineFeature> {
        "parts of the distance), and which contacts slide follows: overlaps of a settled box differ by 0.7 per cent "
        "(data/interop.md)",
        "Give --accept friction to export it with these levers, or set friction = 0", "friction"},
+      {rolling, "rolling resistance", true, false, "its law of these contacts has no rolling moment",
+       "Export to lammps, or set rolling_friction = 0"},
   };
 };
 
@@ -223,8 +226,8 @@ struct EngineFile {
 inline constexpr std::size_t rows_between_looks = 65536;
 
 /// LAMMPS: in.equidem, assembly.data, and the loads where bodies have some. Bonds: BPM's bpm/rotational with a bond
-/// type for each pair of kN and kT. Grains: gran/hooke/history, or, where dashpots or groups differ, the style granular
-/// (LAMMPS of 2023 or later).
+/// type for each pair of kN and kT. Grains: gran/hooke/history, or, where dashpots or groups differ or bodies resist
+/// rolling, the style granular (LAMMPS of 2023 or later).
 /// \param model carried by LAMMPS (require_carried)
 std::vector<EngineFile> lammps_files(const EngineModel& model);
 

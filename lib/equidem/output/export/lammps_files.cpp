@@ -173,7 +173,8 @@ class LammpsWriter {
 
   /// Whether one pair of coefficients per mass holds for all contacts, as gran/hooke/history takes it.
   [[nodiscard]] bool by_mass() const {
-    if (!equal_masses(model_) && model_.graded_dashpots) return false;
+    if ((!equal_masses(model_) && model_.graded_dashpots) || model_.found.contains(EngineFeature::rolling))
+      return false;
     const PairProperties& first = model_.between(types_.begin()->first, types_.begin()->first);
     for (const auto& [a, type_a] : types_)
       for (const auto& [b, type_b] : types_)
@@ -217,16 +218,28 @@ class LammpsWriter {
     return pair.stiffness * (pair.friction > 0 ? pair.tangential_ratio : 2.0 / 7);
   }
 
+  /// Rolling resistance as a pseudo-force at the reduced radius, which is that of LAMMPS's rolling sds; its dashpot is
+  /// that of bodies that are all equal.
+  [[nodiscard]] std::string rolling(const PairProperties& pair, bool wall) const {
+    if (!(pair.rolling_friction > 0)) return "";
+    const EngineBody& body = model_.bodies.front();
+    const double lever = wall ? body.radius : 0.5 * body.radius, stiffness = pair.rolling_ratio * pair.stiffness;
+    const double inverse = lever * lever * (wall ? 1 : 2) / body.inertia.moment;
+    const double dashpot = 2 * pair.rolling_damping * std::sqrt(stiffness / inverse);
+    return fmt::format(" rolling sds {} {} {}", exact(stiffness), exact(dashpot), exact(pair.rolling_friction));
+  }
+
   /// The style granular: the normal dashpot 2 zeta sqrt(m k) by the restitution of zeta at zero overlap, the tangential
   /// one as a multiple of it.
-  [[nodiscard]] std::string coefficients_by_restitution(const PairProperties& pair) const {
+  [[nodiscard]] std::string coefficients_by_restitution(const PairProperties& pair, bool wall) const {
     const double zeta = damping_ratio(NormalLaw::linear_dashpot, pair);
     const double along = zeta == 0 ? 0
                                    : pair.tangential_damping / zeta *
                                          std::sqrt(tangential_mass_share() * stiffness_along(pair) / pair.stiffness);
-    return fmt::format("hooke {} {} tangential linear_history {} {} {} damping coeff_restitution{}",
+    return fmt::format("hooke {} {} tangential linear_history {} {} {}{} damping coeff_restitution{}",
                        exact(pair.stiffness), exact(restitution_of(zeta, ContactEnd::at_zero_overlap)),
-                       exact(stiffness_along(pair)), exact(along), exact(pair.friction), limit(pair));
+                       exact(stiffness_along(pair)), exact(along), exact(pair.friction), rolling(pair, wall),
+                       limit(pair));
   }
 
   [[nodiscard]] static const char* limit(const PairProperties& pair) {
@@ -245,7 +258,7 @@ class LammpsWriter {
       for (const auto& [a, type_a] : types_)
         for (const auto& [b, type_b] : types_)
           if (type_a <= type_b)
-            line(text, "pair_coeff {} {} {}", type_a, type_b, coefficients_by_restitution(model_.between(a, b)));
+            line(text, "pair_coeff {} {} {}", type_a, type_b, coefficients_by_restitution(model_.between(a, b), false));
     }
     line(text, "neighbor {} bin\nneigh_modify delay 0 every 1 check yes", exact(0.3 * largest_radius()));
     return text;
@@ -271,7 +284,7 @@ class LammpsWriter {
         } else {
           const PairProperties& pair = model_.between(kind, wall.kind);
           text += by_mass() ? wall_by_mass(pair, model_.bodies.front().inertia.mass)
-                            : "granular " + coefficients_by_restitution(pair);
+                            : "granular " + coefficients_by_restitution(pair, true);
         }
         line(text, " region wall_{}", k);
       }

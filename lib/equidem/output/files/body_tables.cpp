@@ -120,6 +120,8 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
   table.view("normal_y", contacts, [](const GrainContact& c) { return c.normal.y; });
   table.view("normal_force" + force_unit, contacts, &GrainContact::normal_force);
   table.view("tangential_force" + force_unit, contacts, &GrainContact::tangential_force);
+  if (std::ranges::any_of(contacts, [](const GrainContact& c) { return c.moment != 0; }))
+    table.view(body == Body::disc ? "rolling_moment_N" : "rolling_moment_N_m", contacts, &GrainContact::moment);
   table.view("mode", contacts, &GrainContact::mode).view("steps", contacts, &GrainContact::steps);
   write_csv(path, table, overwrite);
 }

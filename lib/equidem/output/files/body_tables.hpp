@@ -80,8 +80,8 @@ struct WrittenGrains {
 void write_grain_csv(const std::filesystem::path& path, const WrittenGrains& rows, bool overwrite);
 
 /// One row per contact of the last step: i, j (empty where it is a wall), wall (its name), overlap_m, closing_m_per_s,
-/// normal_x, normal_y (from i), normal_force_N, tangential_force_N (of discs _N_per_m, compression positive), mode,
-/// steps.
+/// normal_x, normal_y (from i), normal_force_N, tangential_force_N (of discs _N_per_m, compression positive),
+/// [rolling_moment_N_m (of discs _N), where some contact has one,] mode, steps.
 /// \throws Error (bad_input) as write_file does
 void write_grain_contact_csv(const std::filesystem::path& path, std::span<const GrainContact> contacts,
                              std::span<const Wall> walls, Body body, bool overwrite);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Rolling resistance and cohesion of eight contacts (contacts/contact_effects.hpp), as the response to a contact takes
+/// them.
+///
+/// Rolling: spring, dashpot and limit as of slip, of the velocity R (spin of j - spin of i).
+///
+/// Cohesion: a contact lasts as long as its gap is below the range, and begins and ends to press within that time.
+#pragma once
+
+#include "equidem/grains/contacts/contact_effects.hpp"
+#include "equidem/grains/kernels/resist.hpp"
+
+namespace equidem::eight {
+
+template <class Lanes>
+struct RollingLanes {
+  SpringLanes<Lanes> spring;
+  Lanes dashpot;   ///< times dt, kg
+  Lanes mobility;  ///< mean velocity per impulse, 1/kg
+  Lanes velocity;  ///< of rolling, as that of resist()
+};
+
+/// What rolling carries from step to step.
+template <class Lanes>
+struct RollingMemory {
+  Lanes impulse;  ///< on j at the lever, N s
+  Lanes stretch;  ///< m
+};
+
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE RollingLanes<Lanes> rolling_lanes(const ContactEffects& of, const Lanes& velocity, double dt) {
+  return {spring_lanes(load<Lanes>(of.friction), load<Lanes>(of.stiffness), dt), load<Lanes>(of.dashpot),
+          load<Lanes>(of.half_mobility), velocity};
+}
+
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE RollingMemory<Lanes> rolling_memory(const ContactEffects& of) {
+  return {load<Lanes>(of.impulse), load<Lanes>(of.stretch)};
+}
+
+using simd::store;
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE void store(const RollingMemory<Lanes>& memory, ContactEffects& of) {
+  store(memory.impulse, of.impulse);
+  store(memory.stretch, of.stretch);
+}
+
+/// \param repulsion impulse, >= 0
+template <ResponseKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> roll(const RollingLanes<Lanes>& of, const Lanes& repulsion,
+                                               const ContactChanges<Lanes>& at, double dt,
+                                               RollingMemory<Lanes>& memory) {
+  return resist<kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility, of.spring.friction * repulsion, at,
+                      dt, memory.impulse, memory.stretch);
+}
+
+template <class Lanes>
+struct CohesionLanes {
+  Lanes attraction;  ///< times dt, N s
+  Lanes range;       ///< m
+};
+
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE CohesionLanes<Lanes> cohesion_lanes(const ContactEffects& of) {
+  return {load<Lanes>(of.attraction), load<Lanes>(of.range)};
+}
+
+/// Where spring and dashpot act, of the contacts in range.
+/// \param motion ContactMotion
+template <ResponseKind kind, class Lanes, class Motion>
+EQUIDEM_ALWAYS_INLINE ContactChanges<Lanes> pressing(const ContactChanges<Lanes>& near, const Motion& motion) {
+  ContactChanges<Lanes> at = near;
+  at.touch = near.touch & negative(Lanes{} - motion.overlap);
+  // Euler: whether it pressed before is not known, nor needed
+  if constexpr (kind.verlet) at.alive = near.alive & negative(Lanes{} - motion.overlap_before);
+  at.begun = at.touch & ~at.alive;
+  at.ended = at.alive & ~at.touch;
+  at.any = eight::any(at.begun | at.ended);
+  return at;
+}
+
+/// What is lost as contacts enter and leave the range. The ledger counts a potential energy that is linear in the gap,
+/// at the time of the velocities, half the way of a step behind: there it begins and ends at once.
+template <ResponseKind kind, class Lanes, class Motion>
+EQUIDEM_ALWAYS_INLINE Lanes lost_at_range(const CohesionLanes<Lanes>& of, const Motion& motion,
+                                          const ContactChanges<Lanes>& near, double dt) {
+  if (!near.any) return Lanes{};
+  const Lanes& closing = kind.verlet ? motion.mean_closing : motion.closing;
+  const Lanes energy = (1 / dt) * of.attraction * (motion.overlap + of.range - (0.5 * dt) * closing);
+  return only(near.begun, energy) - only(near.ended, energy);
+}
+
+/// Where the kind has them.
+template <class Lanes>
+struct EffectLanes {
+  RollingLanes<Lanes> rolling;
+  CohesionLanes<Lanes> cohesion;
+};
+
+/// The response of a scene that has some.
+template <bool verlet>
+constexpr ResponseKind with_effects{.friction = true, .verlet = verlet, .rolling = true, .cohesion = true};
+
+/// Those of a group, in loops that read them.
+template <ResponseKind kind>
+EQUIDEM_ALWAYS_INLINE ContactEffects* effects_at(ContactEffects* effects, std::size_t group) {
+  return kind.rolling || kind.cohesion ? effects + group : nullptr;
+}
+
+}  // namespace equidem::eight
