@@ -62,6 +62,14 @@ def test_solutions_are_those_of_dense_matrices(kind):
     assert np.allclose(result.reactions.sum(axis=0), -loads[:, :2].sum(axis=0), rtol=1e-10)
 
 
+def test_a_load_on_a_side_of_discs_with_two_contacts_each_is_carried():
+    """Two rows pulled along x stretch by the load of a row over kN in each of their contacts."""
+    strip = eq.square(columns=4, rows=2, radius=0.5)
+    pulled = eq.solve(strip, (1.0, 0.5), supports=[{"group": "left", "ux": 0.0, "uy": 0.0}],
+                      loads=[{"group": "right", "kind": "total", "force": [3.0, 0.0]}])
+    np.testing.assert_allclose(pulled.displacements[strip.groups["right"], 0], 3 * 1.5, rtol=1e-12)
+
+
 def test_springs_of_each_contact_act_on_their_contact():
     block = BLOCKS["delaunay"]()
     random = np.random.default_rng(1)

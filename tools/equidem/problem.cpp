@@ -500,6 +500,18 @@ std::vector<std::uint8_t> held_by_the_case(const Problem& problem, bool all = fa
   return held;
 }
 
+/// Whether no body is left of those that the case loads.
+bool loses_its_loads(const Problem& problem, const LoadBearingNetwork& network) {
+  if (!network.part) return false;
+  std::set<std::int32_t> loaded;
+  for (const NamedLoads& loads : problem.resolved.load_cases)
+    for (const Load& load : loads.loads)
+      if (const auto found = problem.assembly.groups.find(load.group); found != problem.assembly.groups.end())
+        loaded.insert(found->second.discs.begin(), found->second.discs.end());
+  return !loaded.empty() &&
+         std::ranges::none_of(network.part->discs, [&](std::int32_t disc) { return loaded.contains(disc); });
+}
+
 }  // namespace
 
 void leave_out_loose(Problem& problem) {
@@ -510,7 +522,7 @@ void leave_out_loose(Problem& problem) {
   LoadBearingNetwork network =
       load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem), LeaveOut::loose);
   const auto none_left = [&] { return network.part && network.part->discs.empty(); };
-  if (none_left()) {  // a row: its ends are what the case holds and loads
+  if (none_left() || loses_its_loads(problem, network)) {  // a row: its ends are what the case holds and loads
     network = load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem, true),
                                    LeaveOut::loose);
   }
