@@ -187,7 +187,8 @@ class Interrupted(ProgramTest):
             with self.subTest(signals=signals):
                 out = self.folder / signals[0].name
                 code, stdout, stderr = self.interrupted("pack", PACKING, "--set", "packing.grains=12000", "--set",
-                                                        "packing.box=none", "--set", "output.assembly=hdf5", "--out", out,
+                                                        "packing.box=none", "--set", "packing.solid_fraction=0.8",
+                                                        "--set", "output.assembly=hdf5", "--out", out,
                                                         signals=signals)
                 self.assertEqual(code, 130, stderr)
                 self.assertIn("NOT DONE", stdout)

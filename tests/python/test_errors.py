@@ -224,3 +224,11 @@ def test_numbers_do_not_depend_on_the_locale(tmp_path):
                           encoding="utf-8", env={**os.environ, "LOCPATH": str(tmp_path)})
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == [pytest.approx([0.4e8, 1.2e8]), pytest.approx([0.2, 0.1]), pytest.approx([0.5, 0.75])]
+
+
+def test_options_that_take_no_value_are_named_as_arguments_that_are_true():
+    flags = eq._core.flags_of_verbs()
+    assert {"overwrite", "dry-run", "resume", "require-stable"} <= flags and not {"out", "seed", "set"} & flags
+    for flag in flags:
+        assert eq.errors.in_python(f"pass --{flag}, or wait") == f"pass {flag.replace('-', '_')}=True, or wait"
+    assert eq.errors.in_python("Add --out DIR") == "Add out=DIR"

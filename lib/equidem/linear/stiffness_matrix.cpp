@@ -227,6 +227,7 @@ CompressedColumns with_upper_triangle(const CompressedColumns& lower) {
 
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                                    const DegreesOfFreedom& unknowns) {
+  stop_if_interrupted();
   StiffnessMatrix matrix;
   matrix.block = unknowns.per_disc;
   const std::size_t entries = static_cast<std::size_t>(matrix.block) * matrix.block;

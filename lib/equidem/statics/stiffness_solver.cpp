@@ -287,17 +287,14 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
   Stopwatch watch;
   DissectionTree tree = dissect(assembly_, graph_);
   times.add("order", watch.lap());
-  stop_if_interrupted();
   symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
   times.add("analyze", watch.lap());
-  stop_if_interrupted();
   SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite());
   size.peak_bytes *= memory_factor(method, options_.ordering);
   check_memory(size, options_.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly_, graph_, springs_, unknowns_);
   times.add("assemble", watch.lap());
-  stop_if_interrupted();
   factor_ = factorize(system(), method, mechanisms_, times);
 }
 

@@ -64,6 +64,7 @@ template <typename Step>
 void finish(EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where,
             const Step& step) {
   casefile::with_place(where, [&] { require_carried(model.found, engine, options.accept); });
+  stop_if_interrupted();
   model.time_step = step();
 }
 
@@ -144,6 +145,7 @@ Exported export_to(const ExportOptions& options, Engine engine,
                    std::vector<EngineFile> (*files_of)(const EngineModel& model)) {
   const bool grains = describes_grains(casefile::read_document(options.case_file, options.set));
   CaseModel made = grains ? grain_model(options, engine) : bonded_model(options, engine);
+  stop_if_interrupted();
   const EngineModel& model = made.model;
   Results& results = made.exported.results;
   if (!model.title.empty()) results.line("title", model.title).set("title", model.title);

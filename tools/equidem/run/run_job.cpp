@@ -108,8 +108,8 @@ Results step_results(RunJob& job, const RunPlan& plan) {
 Results dry_run_results(RunJob& job, bool with_files) {
   const RunPlan plan = job.plan();
   Results out = job.scene();
-  // the scene, its lists and the contacts of its files take their memory as in a run
-  if (const AnySimulation& simulation = job.simulation(); with_files) static_cast<void>(simulation.body_contacts());
+  // the scene, its lists and its contacts at the end take their memory as in a run
+  static_cast<void>(job.simulation().body_contacts());
   const double drawing = with_files ? job.bytes_of_drawing() : 0;
   out.line("process").add("peak_bytes", "", std::max(peak_resident_memory(), resident_memory() + drawing),
                           "of memory at the peak", {Shown::bytes});

@@ -69,7 +69,7 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
                                      const std::optional<std::filesystem::path>& begin_from = {});
 
 /// Steps and their estimated wall-clock seconds, memory, the time step. The first steps are performed.
-/// \param with_files whether the run writes files of its contacts
+/// \param with_files whether the run draws its end
 Results dry_run_results(RunJob& job, bool with_files);
 
 /// time_step, ...; steps, time, energy {terms, elastic, dissipated, input, error, relative_error},

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
@@ -506,6 +507,7 @@ class Dissection {
 }  // namespace
 
 DissectionTree dissect(const Assembly& assembly, const ContactGraph& graph, const DissectionOptions& options) {
+  stop_if_interrupted();
   return Dissection(assembly, graph, options).run();
 }
 

@@ -5,6 +5,7 @@
 #include <queue>
 #include <utility>
 
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
@@ -123,6 +124,7 @@ double SymbolicFactor::panel_entries() const {
 }
 
 SymbolicFactor analyze(DissectionTree tree, const ContactGraph& graph, int block) {
+  stop_if_interrupted();
   SymbolicFactor symbolic;
   symbolic.tree = std::move(tree);
   symbolic.block = block;

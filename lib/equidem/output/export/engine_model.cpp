@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/dynamics/layout.hpp"
@@ -116,15 +117,16 @@ void find_features_of_contacts(const Scene& scene, FoundFeatures& found) {
   double longest = 0;
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
-    const std::string name = fmt::format("contact {} of discs {} and {}", k, c.i, c.j);
+    if (k % rows_between_looks == 0) stop_if_interrupted();
+    const auto name = [&] { return fmt::format("contact {} of discs {} and {}", k, c.i, c.j); };
     const double distance = norm(assembly.branch(c));
     longest = std::max(longest, distance);
     pairs.emplace_back(std::minmax(c.i, c.j));
     if (std::abs(c.lever_i + c.lever_j - distance) > lever_tolerance * distance)
-      add(found, contact_points_of_no_radii, "the levers of " + name + ", which do not add up to the distance");
-    if (std::abs(c.lever_i - 0.5 * distance) > lever_tolerance * distance) add(found, contact_points, name);
-    if (scene.springs[k].kT < 0) add(found, bonds, "negative kT of " + name);
-    if (scene.springs.bending(k) > 0) add(found, bonds, "bending springs of " + name);
+      add(found, contact_points_of_no_radii, "the levers of " + name() + ", which do not add up to the distance");
+    if (std::abs(c.lever_i - 0.5 * distance) > lever_tolerance * distance) add(found, contact_points, name());
+    if (scene.springs[k].kT < 0) add(found, bonds, "negative kT of " + name());
+    if (scene.springs.bending(k) > 0) add(found, bonds, "bending springs of " + name());
   }
   std::ranges::sort(pairs);
   if (const auto twice = std::ranges::adjacent_find(pairs); twice != pairs.end())
