@@ -82,7 +82,7 @@ TEST_CASE("what_finds_no_rest_says_so") {
   equidem::Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
   scene.loads = lasting({{"right", LoadKind::per_disc, {0.1, 0.1}, 0}});
   CHECK(refusal_of([&] { (void)relax(scene, {.tolerance = 0}); }).says("unbalanced force wanted is 0"));
-  CHECK(refusal_of([&] { (void)relax(scene, {.max_steps = 0}); }).says("at most 0 steps"));
+  CHECK(refusal_of([&] { (void)relax(scene, {.max_steps = 0}); }).says("largest number of steps is 0"));
   CHECK(refusal_of([&] { (void)relax(scene, {.start = std::vector<DiscMotion>(2)}); }).says("2 discs"));
   CHECK(refusal_of([&] { (void)relax(scene, {.max_steps = 500}); }).kind == ErrorKind::computation_failed);
   scene.supports = held_still(assembly, std::vector<Support>{{"left", 0.0, 0.0, {}}});

@@ -132,7 +132,7 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
   CHECK(refused({.step = 3 * critical, .allow_unstable = true}).message.empty());
   CHECK(refused({.rule = TimeStepRule::thesis}).says("(thesis) is past the limit"));
   CHECK(refused({.fraction = 1.5}).says("1.5"));
-  CHECK(refused({.fraction = 0}).says("(0, 1]"));
+  CHECK(refused({.fraction = 0}).says("> 0 and <= 1"));
   CHECK(refused({.step = -1.0}).says("-1"));
   CHECK(refused({}, {.integrator = Integrator::thesis}).says("no time step is stable"));
   CHECK(refusal_of([] { (void)enum_from<TimeStepRule>("guess"); }).says("\"lanczos\", \"bound\" or \"thesis\""));

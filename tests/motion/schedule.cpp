@@ -143,24 +143,24 @@ TEST_CASE("schedules_without_a_meaning_are_refused_with_the_number_at_fault") {
     const char* word;
   };
   for (const Bad& bad : {
-           Bad{Schedule{.value = nan}, "value = nan"},
-           Bad{ramp(inf, 0, 1), "value = inf"},
-           Bad{ramp(1, nan, 1), "start = nan"},
-           Bad{ramp(1, 0, inf), "end = inf"},
+           Bad{Schedule{.value = nan}, "value of a schedule is nan"},
+           Bad{ramp(inf, 0, 1), "value of a schedule is inf"},
+           Bad{ramp(1, nan, 1), "start of a schedule is nan"},
+           Bad{ramp(1, 0, inf), "end of a schedule is inf"},
            Bad{ramp(1, 2, 1), "ends at 1 s and starts at 2 s"},
            Bad{ramp(1, 2, 2), "ends at 2 s and starts at 2 s"},
-           Bad{sine(1, 0, 0), "frequency 0 Hz"},
-           Bad{sine(1, 0, -3), "frequency -3 Hz"},
-           Bad{sine(1, 0, inf), "frequency = inf"},
-           Bad{cycles(1, 0, -3, 1), "frequency -3 Hz"},
+           Bad{sine(1, 0, 0), "frequency of a schedule is 0 Hz"},
+           Bad{sine(1, 0, -3), "frequency of a schedule is -3 Hz"},
+           Bad{sine(1, 0, inf), "frequency of a schedule is inf Hz"},
+           Bad{cycles(1, 0, -3, 1), "frequency of a schedule is -3 Hz"},
            Bad{{.kind = Schedule::Kind::cycles, .value = 1, .end = 1.25, .frequency = 2}, "2.5 cycles"},
            Bad{{.kind = Schedule::Kind::cycles, .value = 1, .start = 1, .end = 1, .frequency = 2}, "0 cycles"},
            Bad{table({}, {}), "0 times"},
            Bad{table({1, 2}, {1}), "2 times and 1 value"},
            Bad{table({1, 1}, {0, 1}), "the time 1 s comes after 1 s"},
            Bad{table({2, 1}, {0, 1}), "the time 1 s comes after 2 s"},
-           Bad{table({1, nan}, {0, 1}), "time = nan"},
-           Bad{table({1, 2}, {0, inf}), "value = inf"},
+           Bad{table({1, nan}, {0, 1}), "time of a schedule is nan"},
+           Bad{table({1, 2}, {0, inf}), "value of a schedule is inf"},
        }) {
     const std::string sentence = refusal(bad.schedule);
     CAPTURE(bad.word, sentence);

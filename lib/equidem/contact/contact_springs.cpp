@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
@@ -203,24 +204,19 @@ void refuse_spread(double spread) {
 }
 
 ContactSprings chosen_springs(const ContactSprings& springs, const std::vector<std::int32_t>& contacts) {
-  ContactSprings result = springs.with_prestress({});
+  if (contacts.empty()) return springs.with_prestress({});
+  const auto of_chosen = [&](const auto& value) {
+    std::vector<std::decay_t<decltype(value(0))>> values;
+    for (const std::int32_t c : contacts) values.push_back(value(static_cast<std::size_t>(c)));
+    return values;
+  };
   std::vector<double> bending = springs.bending_springs();
-  if (bending.size() > 1) {
-    bending.clear();
-    for (const std::int32_t c : contacts) bending.push_back(springs.bending(static_cast<std::size_t>(c)));
-  }
-  if (!springs.uniform() && !contacts.empty()) {
-    std::vector<SpringConstants> each;
-    each.reserve(contacts.size());
-    for (const std::int32_t c : contacts) each.push_back(springs[static_cast<std::size_t>(c)]);
-    result = ContactSprings(std::move(each));
-  }
-  if (!contacts.empty()) result = result.with_bending(std::move(bending));
-  if (!springs.prestressed()) return result;
+  if (bending.size() > 1) bending = of_chosen([&](std::size_t c) { return springs.bending(c); });
   std::vector<ContactPrestress> prestress;
-  prestress.reserve(contacts.size());
-  for (const std::int32_t c : contacts) prestress.push_back(*springs.prestress(static_cast<std::size_t>(c)));
-  return result.with_prestress(std::move(prestress));
+  if (springs.prestressed()) prestress = of_chosen([&](std::size_t c) { return *springs.prestress(c); });
+  ContactSprings result = springs;
+  if (!springs.uniform()) result = ContactSprings(of_chosen([&](std::size_t c) { return springs[c]; }));
+  return result.with_bending(std::move(bending)).with_prestress(std::move(prestress));
 }
 
 namespace {

@@ -263,12 +263,9 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
   MeasuredMoment moment;
   moment.step = step;
   moment.time = time;
-  std::optional<Rectangle> region;
-  if (options_.region) {
-    region = Rectangle{options_.region->low + moved, options_.region->high + moved};
-  } else {
-    region = measured_region(grains, scene_.clumps, box, heap);
-  }
+  std::optional<Rectangle> region = options_.region;
+  if (region) *region = {region->low + moved, region->high + moved};
+  if (!region) region = measured_region(grains, scene_.clumps, box, heap);
   if (region) {
     const SolidMeasures solids = solid_measures(clipped_area(grains, scene_.clumps, *region), *region);
     if (solids.solid_fraction > 0) moment.void_ratio = solids.void_ratio;

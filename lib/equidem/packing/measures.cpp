@@ -251,17 +251,8 @@ std::vector<ContactForce> carried_forces(const GrainPacking& packing, const std:
 }
 
 /// The centre behind a wall of the body that mirrors one at the wall.
-Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
-  switch (wall) {
-    case 0:
-      return {centre.x, -centre.y};
-    case 1:
-      return {-centre.x, centre.y};
-    case 2:
-      return {2 * box.x - centre.x, centre.y};
-    default:
-      return {centre.x, 2 * box.y - centre.y};
-  }
+Vec2 mirrored(Vec2 centre, const HalfPlane& wall) {
+  return centre - 2 * (dot(wall.normal, centre) + wall.offset) * wall.normal;
 }
 
 BodySection section_of(const GrainPacking& packing, std::size_t body) {
@@ -363,7 +354,7 @@ HeldNetwork network(const GrainPacking& packing, const NetworkOptions& options, 
       const auto [mirror, is_new] = mirrors.try_emplace({found.i, found.j}, static_cast<std::int32_t>(assembly.size()));
       if (is_new) {
         at_walls.discs.push_back(mirror->second);
-        add_body(packing, i, mirrored(centre_of(packing, i), ~found.j, packing.box.size), assembly);
+        add_body(packing, i, mirrored(centre_of(packing, i), sides_of(packing.box)[~found.j]), assembly);
       }
       found.j = mirror->second;
     }

@@ -131,12 +131,8 @@ void make_grains(const PackingShape& shape, const Bodies& bodies, double density
 std::vector<Wall> walls_of(const PackingBox& box) {
   if (box.periodic()) return {};
   std::vector<Wall> walls = walls_of_box(box.size.x);
-  if (box.sides == PackingBox::Sides::open_top) return walls;
-  Wall lid = walls.front();
-  lid.name = "lid";
-  lid.point = {0, box.size.y};
-  lid.normal = {0, -1};
-  walls.push_back(std::move(lid));
+  if (box.sides != PackingBox::Sides::open_top)
+    walls.push_back({.name = "lid", .point = {0, box.size.y}, .normal = {0, -1}, .kind = 1});
   return walls;
 }
 

@@ -66,12 +66,6 @@ double time_to_rest(const GrainScene& scene, const SettlingOptions& options) {
   return std::min(options.longest, 2 * std::sqrt(2 * highest / options.gravity));
 }
 
-double mean_mass(std::span<const Grain> grains) {
-  double mass = 0;
-  for (const Grain& grain : grains) mass += grain.inertia.mass;
-  return mass / static_cast<double>(grains.size());
-}
-
 }  // namespace
 
 double contact_step_limit(const GrainScene& scene, const SettlingOptions& options) {
@@ -138,10 +132,12 @@ void settle(GrainScene scene, const SettlingOptions& options, GrainPacking& pack
   // they carry.
   constexpr double lying_drop = 1e-4;
   const double resting_drop = scene.bonds.empty() ? 1e-9 : 1e-5;
-  double smallest = INFINITY;
-  for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
-  const double weight_radius =
-      static_cast<double>(scene.grains.size()) * mean_mass(scene.grains) * options.gravity * smallest;
+  double smallest = INFINITY, mass = 0;
+  for (const Grain& grain : scene.grains) {
+    smallest = std::min(smallest, grain.radius);
+    mass += grain.inertia.mass;
+  }
+  const double weight_radius = mass * options.gravity * smallest;
   constexpr std::int64_t block = 100;
   const double steps = std::ceil(options.longest / step);
   const double expected = std::ceil(time_to_rest(scene, options) / step);

@@ -112,11 +112,6 @@ void refuse_imbalance(const Assembly& assembly, const RestBalance& balance) {
       "Let the packing come to rest, or set effects.prestress = \"off\"");
 }
 
-std::string told(const Assembly& assembly, const RestBalance& balance) {
-  return fmt::format("on one body they lack up to {:.2g} of their mean{}", balance.relative,
-                     assembly.periodic() ? "" : ", which weight, walls and loads balance");
-}
-
 }  // namespace
 
 double largest_prestress(const Assembly& assembly, const ContactSprings& springs) {
@@ -160,8 +155,9 @@ std::optional<PrestressedSprings> choose_prestress(const Assembly& assembly, con
   try {
     refuse_imbalance(assembly, result.balance);
     result.springs = springs.with_prestress(prestress_of(assembly));
-    result.sentence = fmt::format("count at {}: {}; {}", counted(result.balance.loaded, "contact"), size,
-                                  told(assembly, result.balance));
+    result.sentence = fmt::format("count at {}: {}; on one body they lack up to {:.2g} of their mean{}",
+                                  counted(result.balance.loaded, "contact"), size, result.balance.relative,
+                                  assembly.periodic() ? "" : ", which weight, walls and loads balance");
   } catch (const Error& error) {
     if (choice == PrestressChoice::on || error.kind() != ErrorKind::bad_input) throw;
     result.sentence = fmt::format("DO NOT COUNT: {}; {}", error.problem(), size);

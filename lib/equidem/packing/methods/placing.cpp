@@ -406,20 +406,16 @@ class Inserter {
 /// Overlaps of a body at a place with others and walls: sum of squares, m², and the largest one, m.
 struct Crowding {
   double squares = 0, largest = 0;
-  void add(double overlap) {
-    if (overlap <= 0) return;
-    squares += overlap * overlap;
-    largest = std::max(largest, overlap);
-  }
 };
 
 Crowding crowding(const PlacedBodies& placed, std::int32_t body, Placement there) {
   Crowding sum;
-  placed.any_overlap(there.place, placed.radius(static_cast<std::size_t>(body)), there.turns, body,
-                     [&](double overlap) {
-                       sum.add(overlap);
-                       return false;
-                     });
+  const auto add = [&](double overlap) {
+    if (overlap > 0) sum.squares += overlap * overlap;
+    sum.largest = std::max(sum.largest, overlap);
+    return false;
+  };
+  placed.any_overlap(there.place, placed.radius(static_cast<std::size_t>(body)), there.turns, body, add);
   return sum;
 }
 
