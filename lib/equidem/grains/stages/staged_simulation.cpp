@@ -391,7 +391,8 @@ void StagedSimulation::begin_stage() {
   bonds_ = std::move(bonds);
   const EnergyLedger after = present_.energy();
   energies_.potential = before.potential;
-  const double stored = before.kinetic + before.elastic(), change = after.kinetic + after.elastic() - stored;
+  const double stored = before.kinetic + before.elastic();
+  const double change = after.kinetic + after.elastic() - stored + (after.cohesion - before.cohesion);
   if (std::abs(change) > energy_rounding * stored) energies_.changes += change;
 }
 
