@@ -377,7 +377,7 @@ Results BondedRun::scene() const {
             : order() > 2 && !scene_.walls.empty()
                 ? " (2 over steps in which a disc touches or leaves a wall: its force has a kink)"
                 : "")
-      .add("", "", scheme.force_evaluations, "force evaluation", {Shown::count})
+      .add("", "", static_cast<int>(scheme.stages(1, 0).size()), "force evaluation", {Shown::count})
       .note(" a step");
 }
 
