@@ -273,12 +273,9 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
   MeasuredMoment moment;
   moment.step = step;
   moment.time = time;
-  std::optional<Rectangle> region;
-  if (options_.region) {
-    region = Rectangle{options_.region->low + moved, options_.region->high + moved};
-  } else {
-    region = measured_region(grains, scene_.clumps, box, heap);
-  }
+  std::optional<Rectangle> region = options_.region;
+  if (region) *region = {region->low + moved, region->high + moved};
+  if (!region) region = measured_region(grains, scene_.clumps, box, heap);
   if (region) {
     const SolidMeasures solids = solid_measures(clipped_area(grains, scene_.clumps, *region), *region);
     if (solids.solid_fraction > 0) moment.void_ratio = solids.void_ratio;
@@ -301,7 +298,7 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
 }
 
 CoarseGrid BoxMeasures::grid_of_fields(const GrainSimulation& simulation) const {
-  const GrainBox box = box_of(simulation.placed_walls(), simulation.grains(), simulation.time());
+  const GrainBox box = box_of(simulation.placed_walls(), simulation.present_grains(), simulation.time());
   Rectangle region = box.inside;
   if (!box.lid) {
     region.high.y = -INFINITY;
@@ -405,6 +402,7 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
   std::vector<Vec2> momenta(grid.size());
   for (std::size_t g = 0; g < grains.size(); ++g) {
     const Grain& grain = grains[g];
+    if (!grain.present) continue;
     if (const auto cell = cell_at(grid, grain.position)) {
       bodies[*cell] += 1;
       ends[*cell] += held[g];
