@@ -137,7 +137,7 @@ inline Bits bits_of(const GrainSimulation& simulation) {
   const auto add = [&](std::initializer_list<double> numbers) {
     for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
   };
-  for (const Grain& g : simulation.grains()) {
+  for (const Grain& g : simulation.present_grains()) {
     add({g.position.x, g.position.y, g.velocity.x, g.velocity.y, g.spin, g.angle});
   }
   for (const GrainContact& c : simulation.contacts()) {

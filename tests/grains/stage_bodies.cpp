@@ -79,7 +79,8 @@ TEST_CASE("a_body_that_is_taken_away_pushes_and_pulls_no_more") {
   CHECK(norm(staged.velocities()[left].u - velocity) < 1e-14);
   CHECK(std::abs(staged.velocities()[left].theta - spin) < 1e-13);
   CHECK_FALSE(is_there(staged.motions()[1 - left]));
-  CHECK(staged.numbers() == std::vector<std::size_t>{left});
+  CHECK(staged.present().grains()[left].present);
+  CHECK_FALSE(staged.present().grains()[1 - left].present);
   CHECK(staged.reports()[1].removed == 1);
   CHECK(std::abs(after.error() - before.error()) < 1e-13);
   CHECK(after.work_of_stages < -before.elastic());  // and its kinetic energy
@@ -105,13 +106,14 @@ TEST_CASE("bodies_that_nothing_met_leave_no_trace_when_they_go") {
   run_to(staged, 500);
   plain.advance(500);
   double off = 0;
-  const auto grains = staged.present().grains();
+  const auto grains = staged.present().present_grains();
   REQUIRE(grains.size() == scene.grains.size());
   for (std::size_t g = 0; g < grains.size(); ++g)
     off = std::max(off, norm(grains[g].position - plain.grains()[g].position));
   CAPTURE(stepping.name(), off);
   CHECK(off < 1e-10);
-  CHECK(staged.numbers()[5] == 6);
+  CHECK_FALSE(is_there(staged.motions()[5]));
+  CHECK(staged.motions()[6].u == grains[5].position);
   CHECK(plain.counters().contacts > 10);
 }
 
@@ -157,7 +159,7 @@ TEST_CASE("stages_that_change_bodies_go_on_from_any_saved_state_with_the_same_bi
     scene.strengths = ContactStrengths{{14, 9, 99, 9, 14, 14}, {9, 5, 99, 5, 9, 9}, 0.2};
   }
   const StagedSimulation whole = check_resuming(changing_stages(scene, 60), options_of(stepping, 4e-3), 7);
-  CAPTURE(stepping.name(), scene_kind, whole.numbers().size(), whole.breaks().size());
+  CAPTURE(stepping.name(), scene_kind, whole.present().present_grains().size(), whole.breaks().size());
   if (scene_kind != 1) return;
   CHECK(whole.breaks().size() > 0);
   CHECK(whole.holding_bonds().bonds.size() + whole.breaks().size() < whole.bonds().size());  // some went
@@ -234,9 +236,31 @@ TEST_CASE("breaks_keep_the_numbers_of_their_bonds_when_bodies_go") {
   }
   for (const GrainBond& bond : staged.bonds()) CHECK(bond.j == bond.i + 1);  // numbers of the run
   for (const GrainBond& bond : staged.holding_bonds().bonds) {
-    CHECK(staged.numbers()[bond.i] + 1 == staged.numbers()[bond.j]);
-    CHECK(staged.numbers()[bond.i] != gone);
+    CHECK(bond.i + 1 == bond.j);
+    CHECK(bond.i != gone);
+    CHECK(bond.j != gone);
   }
+}
+
+TEST_CASE("bodies_keep_their_numbers_in_contacts_and_errors_where_others_go") {
+  const Stepping stepping = GENERATE(from_range(stage_steppings));
+  GrainScene scene =
+      scene_of({ball({0, 0}, 0.5), ball({5, 0}, 0.5), ball({9.02, 0}, 0.5, {0.1, 0}), ball({10, 0}, 0.5)}, {},
+               firm(stepping.law));
+  GrainStage all{.name = "all", .scene = scene, .steps = 4}, fewer = all, more = all;
+  fewer.name = "fewer";
+  fewer.bodies.removed = {in_box({-1, -1}, {1, 1})};
+  more.name = "more";
+  more.bodies.added = {ball({9.9, 0.1}, 0.5)};
+  StagedSimulation staged({all, fewer, more}, options_of(stepping, 2e-3));
+  run_to(staged, 6);
+  const std::vector<GrainContact> contacts = staged.present().contacts();
+  REQUIRE(contacts.size() == 1);
+  CHECK(contacts[0].i == 2);
+  CHECK(contacts[0].j == 3);
+  CHECK(staged.body_contacts()[0].i == 2);
+  CHECK(staged.present().grains()[3].position == staged.motions()[3].u);
+  check_refused([&] { run_to(staged, 60); }, {"grains 3 and 4 start inside one another"});
 }
 
 TEST_CASE("a_body_that_is_added_inside_a_contact_moves_as_one_that_was_there_from_the_start") {

@@ -288,7 +288,7 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
 }
 
 CoarseGrid BoxMeasures::grid_of_fields(const GrainSimulation& simulation) const {
-  const GrainBox box = box_of(simulation.placed_walls(), simulation.grains(), simulation.time());
+  const GrainBox box = box_of(simulation.placed_walls(), simulation.present_grains(), simulation.time());
   Rectangle region = box.inside;
   if (!box.lid) {
     region.high.y = -INFINITY;
@@ -388,6 +388,7 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
   std::vector<Vec2> momenta(grid.size());
   for (std::size_t g = 0; g < grains.size(); ++g) {
     const Grain& grain = grains[g];
+    if (!grain.present) continue;
     if (const auto cell = cell_at(grid, grain.position)) {
       bodies[*cell] += 1;
       ends[*cell] += held[g];

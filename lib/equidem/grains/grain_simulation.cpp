@@ -30,26 +30,30 @@ namespace {
 /// A refused step costs at most as many steps more; to keep a state so seldom costs less than a hundredth of them.
 constexpr std::int64_t steps_between_kept_states = 1024;
 
+BodyBlocks blocks_of(const GrainScene& scene, const GrainOptions& options) {
+  return BodyBlocks(static_cast<std::size_t>(std::ranges::distance(scene.present())), options.bodies_per_block);
+}
+
 }  // namespace
 
-GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options,
-                                 const std::vector<std::size_t>& order)
+GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
     : AnySimulation(BodyFamily::colliding, options.time_step),
-      implementation_((check(scene, options, {}, std::vector<std::int32_t>(order.size())),
-                       hidden<Implementation>(scene, options, order))) {}
+      implementation_((check(scene, options), hidden<Implementation>(scene, options))) {
+  implementation_->begin();
+}
 
 GrainSimulation::Implementation::Implementation(const GrainScene& scene, const GrainOptions& options,
-                                                const std::vector<std::size_t>& order)
+                                                const GrainSystem* before)
     : effects(effects_of(scene, options)) {
   system.options = options;
-  system.bodies.blocks = BodyBlocks(scene.grains.size(), options.bodies_per_block);
+  system.bodies.blocks = blocks_of(scene, options);
   system.bodies.sums.resize(system.bodies.blocks.count());
   system.bodies.ways.resize(system.bodies.blocks.count());
   system.bodies.inwards.resize(system.bodies.blocks.count());
   system.bodies.earliest.resize(system.bodies.blocks.count());
   std::iota(system.bodies.earliest.begin(), system.bodies.earliest.end(), std::size_t{0});
-  order_by_place(system, scene, order);
-  set_cell(system);
+  order_by_place(system, scene, before == nullptr ? std::vector<std::size_t>() : before->bodies.order);
+  set_cell(system, before);
   tie_bonds(system, scene);
   const auto any_pair = [&](auto has) { return std::ranges::any_of(scene.pairs, has); };
   system.rolling = any_pair([](const PairProperties& pair) { return pair.rolling_friction > 0; });
@@ -59,7 +63,7 @@ GrainSimulation::Implementation::Implementation(const GrainScene& scene, const G
   system.smallest_radius = smallest_inscribed_radius(scene);
   system.scene.walls = joined_walls(system.walls.given, joint_gap * system.smallest_radius);
   double fastest = 0;
-  for (const Grain& grain : scene.grains)
+  for (const Grain& grain : scene.present())
     fastest = std::max(
         fastest, norm(grain.velocity) + (grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius));
   system.length = reference_length(scene, options);
@@ -84,6 +88,9 @@ GrainSimulation::Implementation::Implementation(const GrainScene& scene, const G
   system.contacts.margin = std::max(system.contacts.base_margin, 8 * fastest * options.time_step);
   if (!system.walls.servos.empty()) limit_free_way(system);
   system.walls.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
+}
+
+void GrainSimulation::Implementation::begin() {
   find_candidates(system);
   touch_near_pairs(system);
   touch_near_parts(system);
@@ -136,31 +143,36 @@ std::int64_t GrainSimulation::step() const {
 
 std::vector<Grain> GrainSimulation::grains() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<Grain> grains(system.bodies.motions.size());
-  for (std::size_t k = 0; k < grains.size(); ++k) {
-    Grain grain = system.scene.grains[k];
+  std::vector<Grain> grains = system.scene.grains;
+  for (std::size_t k = 0; k < system.bodies.motions.size(); ++k) {
+    Grain& grain = grains[system.bodies.grain_of[k]];
     const GrainMotion& motion = system.bodies.motions[k];
     grain.position = motion.position;
     grain.velocity = motion.velocity;
     grain.spin = motion.spin;
     grain.angle = motion.angle;
-    grains[system.bodies.grain_of[k]] = grain;
   }
   return grains;
 }
 
+std::vector<Grain> GrainSimulation::present_grains() const {
+  std::vector<Grain> present = grains();
+  std::erase_if(present, [](const Grain& grain) { return !grain.present; });
+  return present;
+}
+
 std::vector<DiscMotion> GrainSimulation::motions() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<DiscMotion> motions(system.bodies.motions.size());
-  for (std::size_t k = 0; k < motions.size(); ++k)
+  std::vector<DiscMotion> motions(system.scene.grains.size(), not_there);
+  for (std::size_t k = 0; k < system.bodies.motions.size(); ++k)
     motions[system.bodies.grain_of[k]] = {system.bodies.motions[k].position, system.bodies.motions[k].angle};
   return motions;
 }
 
 std::vector<DiscMotion> GrainSimulation::velocities() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<DiscMotion> velocities(system.bodies.motions.size());
-  for (std::size_t k = 0; k < velocities.size(); ++k)
+  std::vector<DiscMotion> velocities(system.scene.grains.size(), not_there);
+  for (std::size_t k = 0; k < system.bodies.motions.size(); ++k)
     velocities[system.bodies.grain_of[k]] = {system.bodies.motions[k].velocity, system.bodies.motions[k].spin};
   return velocities;
 }
@@ -216,10 +228,6 @@ std::optional<PeriodicCell> GrainSimulation::placed_cell() const {
   cell->shift = system.cell.now.b.x;
   cell->corner = system.cell.centre - 0.5 * Vec2{cell->width, cell->height};
   return cell;
-}
-
-const std::vector<std::size_t>& GrainSimulation::order() const {
-  return implementation_->system.bodies.grain_of;
 }
 
 std::vector<ServoReport> GrainSimulation::servos() const {
@@ -381,13 +389,16 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const Wall& w) { return w.moves(); });
   const bool servo = std::ranges::any_of(scene.walls, [](const Wall& w) { return w.servo.has_value(); });
   const auto any_shape = [&](GrainShape shape) {
-    return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
+    return std::ranges::any_of(scene.present(), [&](const Grain& g) { return g.shape() == shape; });
   };
-  const std::size_t blocks = BodyBlocks(scene.grains.size(), options.bodies_per_block).count();
+  const std::size_t blocks = blocks_of(scene, options).count();
   const bool ellipses = any_shape(GrainShape::ellipse), clumps = any_shape(GrainShape::clump);
   Effects effects;
   effects.tangential_springs = springs;
-  const auto any_bond = [&](const auto& test) { return std::any_of(scene.bonds.begin(), scene.bonds.end(), test); };
+  const auto any_bond = [&](const auto& test) {
+    return std::ranges::any_of(scene.bonds, [&](const GrainBond& b) { return scene.ties(b) && test(b); });
+  };
+  const bool bonds = any_bond([](const GrainBond& /*any*/) { return true; });
   const bool sprung = any_bond([](const GrainBond& b) { return b.normal_spring > 0 || b.tangential_spring > 0; });
   const bool bending = any_bond([](const GrainBond& b) { return b.bending_spring > 0; });
   const bool turning = any_bond([](const GrainBond& b) {
@@ -411,8 +422,8 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
             : turning ? "bonds turn grains"
                       : "normal forces turn ellipses and clumps",
             "no friction: nothing can turn a grain"),
-      entry("bonds", !scene.bonds.empty(),
-            sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots", "no grains are tied"),
+      entry("bonds", bonds, sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots",
+            "no grains are tied"),
       entry("bending springs", bending, "bonds resist the relative rotation of their discs", "no bond has one"),
       entry("breaking", scene.strengths.has_value(), "bonds have strengths", "no bond has a strength"),
       entry("gravity", scene.weighs(), "it is not 0", "it is 0"),
@@ -465,7 +476,7 @@ class RestingBodies {
       tied_[bond.j].push_back(bond.i);
     }
     for (std::size_t grain = 0; grain < grains.size(); ++grain)
-      if (of_[grain] == none) add_body(grain, grains, cell);
+      if (grains[grain].present && of_[grain] == none) add_body(grain, grains, cell);
   }
 
   [[nodiscard]] std::size_t of(std::size_t grain) const { return of_[grain]; }

@@ -42,28 +42,27 @@ struct GrainCounters {
   std::int64_t doubtful = 0;
 };
 
-/// The numbers of bodies, bonds and walls of a scene in the one before; -1: they are new.
-struct SceneOrigins {
-  std::vector<std::int32_t> bodies, bonds, walls;
-};
-
 struct BondBreak;
 
 class GrainSimulation final : public AnySimulation {
  public:
   /// Determines the effects and chooses the loop. Bodies and walls are sorted by position internally, so results do not
   /// depend on the caller's order.
-  /// \param order in which the loops take the bodies, as order() of the run that they are from; empty: by position
   /// \throws Error as check(scene, options)
-  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order = {});
+  GrainSimulation(const GrainScene& scene, const GrainOptions& options);
 
   /// Go on in a changed scene, from the present step with contacts, bonds, losses and counters. Contacts with bodies
   /// and walls that are gone end, and those of discs that are bonded now; those of bodies and walls that are new begin
   /// as at the start of a simulation; the control of servo walls that stay goes on, and their errors are counted anew.
-  /// \param scene the bodies, walls and cell at their present places; schedules are those of the time since the start
-  /// \param origins of its bodies, bonds and walls in the present one; bodies that stay keep order(), new ones follow
+  /// \param scene the bodies of the present one, as grains() with other kinds and presence, its bonds, then new ones,
+  ///        walls at their present places; schedules are those of the time since the start; the periods of the cell are
+  ///        not read
+  /// \param walls the number in the present scene of each wall; -1: it is new
   /// \throws Error as the constructor; then nothing has changed
-  void change(const GrainScene& scene, const SceneOrigins& origins);
+  void change(GrainScene scene, const std::vector<std::int32_t>& walls);
+  /// Go on from a state of the same run in another scene, of which the places of the bodies are not read.
+  /// \throws Error as restore(state) and check_properties(scene, options); then nothing has changed
+  void restore(const GrainScene& scene, const SavedState& state);
 
   [[nodiscard]] const Effects& effects() const override;
   /// \throws Error (computation_failed) if a body would pass through a wall or another body undetected, or centres
@@ -82,17 +81,17 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] std::vector<Wall> placed_walls() const;
   /// The periodic cell of the scene with its present periods, if there is one.
   [[nodiscard]] std::optional<PeriodicCell> placed_cell() const;
-  /// Numbers of the bodies in the order of the loops.
-  [[nodiscard]] const std::vector<std::size_t>& order() const;
   /// One for each servo wall, in the caller's order.
   [[nodiscard]] std::vector<ServoReport> servos() const;
   [[nodiscard]] double bytes_per_body() const override;
-  /// Arrays of GrainState, bodies and walls in the order of the loops.
+  /// Arrays of GrainState, present bodies and walls in the order of the loops.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 
-  /// Bodies in the caller's order.
+  /// Bodies in the caller's order; the absent ones as in the scene.
   [[nodiscard]] std::vector<Grain> grains() const;
+  /// Without the absent ones.
+  [[nodiscard]] std::vector<Grain> present_grains() const;
   /// Contacts of the last step, ordered by (i, j).
   [[nodiscard]] std::vector<GrainContact> contacts() const;
   [[nodiscard]] const GrainCounters& counters() const;

@@ -45,13 +45,17 @@ struct GrainSimulation::Implementation {
   std::optional<GrainState> kept;  ///< a recent state, restored when a step fails
 
   /// \param scene checked
-  Implementation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order);
+  /// \param before an earlier scene of the run, from which the order of the bodies and the centre of the cell are
+  Implementation(const GrainScene& scene, const GrainOptions& options, const GrainSystem* before = nullptr);
 
+  /// Begin the contacts of bodies that overlap.
+  void begin();
   /// Go on from another simulation, as GrainSimulation::change.
-  void take_over(const Implementation& before, const SceneOrigins& origins);
+  void take_over(const Implementation& before, const std::vector<std::int32_t>& walls);
 
   [[nodiscard]] GrainState state() const;
   void go_back_to(const GrainState& state);
+  void restore(const SavedState& saved);
 
   void make_step();
   /// Step of a simultaneous law: all contacts together.

@@ -53,7 +53,7 @@ constexpr auto load_numbers = [](auto& load, const auto& visit) {
 
 constexpr auto servo_numbers = [](auto& s, const auto& visit) {
   control_numbers(s, visit);
-  visit(s.way), visit(s.passed_speed), visit(s.free_way), visit(s.touched);
+  visit(s.way), visit(s.passed_speed), visit(s.free_way), visit(s.touched), visit(s.farthest);
 };
 
 constexpr auto cell_numbers = [](auto& cell, const auto& visit) {
@@ -178,8 +178,11 @@ SavedState GrainSimulation::save() const {
 }
 
 void GrainSimulation::restore(const SavedState& saved) {
-  const GrainSystem& system = implementation_->system;
-  const auto losses = rows_in<EnergyLedger>(saved, "losses", ledger_numbers(family()));
+  implementation_->restore(saved);
+}
+
+void GrainSimulation::Implementation::restore(const SavedState& saved) {
+  const auto losses = rows_in<EnergyLedger>(saved, "losses", ledger_numbers(BodyFamily::colliding));
   const auto counters = rows_in<GrainCounters>(saved, "counters", counter_numbers);
   const auto start = rows_in<EnergyAtStart>(saved, "start", start_numbers);
   GrainState state{.step = saved.step,
@@ -193,10 +196,9 @@ void GrainSimulation::restore(const SavedState& saved) {
   check_breaks(system, state.breaks);
   const std::size_t bodies = system.bodies.motions.size();
   if (state.motions.size() != bodies || !are_of_scene(system, state.contacts) ||
-      state.impulses.size() != (implementation_->keeps_impulses() ? bodies : 0) ||
-      state.bonds.size() != system.bonds.tied.size() || losses.size() != 1 || counters.size() != 1 ||
-      state.walls.size() != system.walls.loads.size() || state.servos.size() != system.walls.servos.size() ||
-      start.size() != 1) {
+      state.impulses.size() != (keeps_impulses() ? bodies : 0) || state.bonds.size() != system.bonds.tied.size() ||
+      losses.size() != 1 || counters.size() != 1 || state.walls.size() != system.walls.loads.size() ||
+      state.servos.size() != system.walls.servos.size() || start.size() != 1) {
     bad_input(fmt::format("the state is of {}", counted(std::ssize(state.motions), "grain")),
               fmt::format("the scene has {}", bodies), go_on_with);
   }
@@ -210,8 +212,8 @@ void GrainSimulation::restore(const SavedState& saved) {
       bad_input("the state is of another periodic cell", "it has other numbers than this one", go_on_with);
     state.cell = cells[0];
   }
-  implementation_->go_back_to(state);
-  implementation_->kept.reset();
+  go_back_to(state);
+  kept.reset();
 }
 
 std::vector<BondBreak> GrainSimulation::breaks() const {

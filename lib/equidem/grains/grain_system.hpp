@@ -138,6 +138,7 @@ struct ServoMotion : ControlState {
   double passed_speed = 0;  ///< in the step before, m/s
   double free_way = 0;      ///< m, since the wall last touched a body
   bool touched = false;     ///< it has touched one
+  double farthest = 0;      ///< limit of free_way: the extent of all bodies and walls where the servo began, m
 };
 
 struct ServoState : ServoMotion {
@@ -162,8 +163,9 @@ struct GrainBodies {
   std::vector<BodyImpulse> impulses_before;  ///< of the previous step; stored if candidate_loop() needs them
   /// Maps: mass times shift of the position, kg m. exact_flow: integral of (dt - t) force dt, N s². Other laws: empty.
   std::vector<Vec2> moments;
-  std::vector<std::size_t> grain_of;         ///< caller's number of the k-th
-  std::vector<std::int32_t> place_of_grain;  ///< its inverse
+  std::vector<std::size_t> order;            ///< numbers of all, absent ones too
+  std::vector<std::size_t> grain_of;         ///< caller's number of the k-th that is present
+  std::vector<std::int32_t> place_of_grain;  ///< its inverse; -1: absent
 };
 
 /// Ellipses and clumps; all empty in scenes of discs alone. In a periodic cell the images follow as bodies of their own
@@ -182,7 +184,6 @@ struct Walls {
   std::vector<WallPlace> places;
   std::vector<WallLoad> loads;
   std::vector<ServoState> servos;
-  double longest_free_way = 0;              ///< of a servo wall, m
   std::vector<WallJoints> joints;           ///< joints of each wall; empty if no walls join
   std::vector<std::size_t> wall_of;         ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_wall;  ///< its inverse
@@ -217,7 +218,7 @@ struct BondList {
 };
 
 struct GrainSystem {
-  GrainScene scene;  ///< walls and grains sorted by position
+  GrainScene scene;  ///< walls sorted by position
   GrainOptions options;
   double length = 0;                 ///< d_c
   std::vector<double> dissipations;  ///< LawFacts::dissipation of scene.pairs
@@ -246,6 +247,7 @@ struct GrainSystem {
   /// Time from that of the velocities to that of the positions, s, under a force law.
   [[nodiscard]] double lag() const { return options.verlet() ? 0 : 0.5 * options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
+  [[nodiscard]] const Grain& grain(std::int32_t body) const { return scene.grains[bodies.grain_of[body]]; }
   /// Of a body and another one, or an image of it, or a wall ~j.
   [[nodiscard]] const PairProperties& properties(std::int32_t i, std::int32_t j) const {
     const int other = j >= 0 ? bodies.constants[body_of(j)].kind : scene.walls[~j].kind;
@@ -281,8 +283,8 @@ struct GrainSystem {
   }
 };
 
-/// Sort grains and walls by position, so that results do not depend on the caller's order.
-/// \param order that the grains take instead, as GrainBodies::grain_of; empty: by position
+/// Sort grains and walls by position, so that results do not depend on the caller's order; absent grains follow.
+/// \param order that the grains take instead, as GrainBodies::order; empty: by position
 void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vector<std::size_t>& order);
 
 /// Compute LawFacts::dissipation for every pair of kinds.

@@ -57,7 +57,7 @@ double wanted_force(const GrainSystem& system, const ServoState& state) {
   const double wanted = servo.wanted.at(system.time());
   if (!servo.is_stress) return wanted;
   const double length = servo.length > 0 ? servo.length : length_between(system, state);
-  if (length > 1e-6 * system.walls.longest_free_way) return wanted * length;
+  if (length > 1e-6 * state.farthest) return wanted * length;
   throw Error(ErrorKind::computation_failed,
               fmt::format("step {}: walls '{}' and '{}' have met", system.step, servo.between[0], servo.between[1]),
               fmt::format("no length is left between them on which the stress of wall '{}' acts",
@@ -154,13 +154,12 @@ void steer(GrainSystem& system, ServoState& state) {
     state.mean_rate = 0;
   }
   state.count(state.touched, impedance > 0 ? std::min(1.0, resistance.spring / impedance) : 1);
-  if (state.free_way <= system.walls.longest_free_way) return;
-  throw Error(
-      ErrorKind::computation_failed,
-      fmt::format("step {}: the servo wall '{}' has gone {:.3g} m and met no body", system.step,
-                  system.scene.walls[state.wall].name, state.free_way),
-      fmt::format("all bodies and walls lay in {:.3g} m, and nothing pushes back", system.walls.longest_free_way),
-      "Let it push towards bodies, and hold them by walls on the other side", servo.place);
+  if (state.free_way <= state.farthest) return;
+  throw Error(ErrorKind::computation_failed,
+              fmt::format("step {}: the servo wall '{}' has gone {:.3g} m and met no body", system.step,
+                          system.scene.walls[state.wall].name, state.free_way),
+              fmt::format("all bodies and walls lay in {:.3g} m, and nothing pushes back", state.farthest),
+              "Let it push towards bodies, and hold them by walls on the other side", servo.place);
 }
 
 /// \param key of the table of the servo that is wrong; empty: the table
@@ -289,7 +288,7 @@ void limit_free_way(GrainSystem& system) {
     include(wall.point + moved, 0);
     if (wall.shape == Wall::Shape::segment) include(wall.end + moved, 0);
   }
-  system.walls.longest_free_way = norm(high - low);
+  for (ServoState& state : system.walls.servos) state.farthest = norm(high - low);
 }
 
 void steer_walls(GrainSystem& system) {

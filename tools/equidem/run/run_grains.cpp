@@ -129,7 +129,8 @@ void refuse_made_energy(const GrainCase& resolved, double step, const StagedSimu
   const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential) +
                        std::max(0.0, ledger.work_of_stages) + std::max(0.0, ledger.work_of_cell) + by_breaks;
   if (ledger.kinetic <= most * given) return;
-  if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.present().grains()))) return;
+  if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.present().present_grains())))
+    return;
   if (by_breaks > 0.5 * given) {
     throw Error(ErrorKind::computation_failed,
                 fmt::format("step {}: the bodies move with {:.3g} times the energy that there was, most of it set free "
@@ -276,27 +277,32 @@ int GrainRun::colour_of(const std::string& group) const {
 }
 
 GrainRun::Snapshot GrainRun::snapshot() const {
-  Snapshot now{.grains = simulation_.present().grains(), .walls = simulation_.present().placed_walls()};
+  const GrainSimulation& present = simulation_.present();
+  Snapshot now{.grains = {}, .walls = present.placed_walls(), .bonds = simulation_.holding_bonds()};
   const std::vector<std::string>& kinds = present_contacts().kinds;
-  for (const Grain& grain : now.grains) {
+  for (const Grain& grain : present.grains()) {
+    now.places.push_back(now.grains.size());
+    if (!grain.present) continue;
+    now.numbers.push_back(now.places.size() - 1);
+    now.grains.push_back(grain);
     now.groups.push_back(kinds[static_cast<std::size_t>(grain.kind)]);
     now.colours.push_back(colour_of(now.groups.back()));
   }
+  for (GrainBond& bond : now.bonds.bonds) bond.i = now.places[bond.i], bond.j = now.places[bond.j];
   return now;
 }
 
 void GrainRun::write_tables(const CommonOptions& into) const {
   const std::filesystem::path& folder = *into.out;
   const Snapshot now = snapshot();
-  const std::vector<std::size_t>& numbers = simulation_.numbers();
   std::vector<double> densities;
-  for (const std::size_t number : numbers) densities.push_back(case_.densities[number]);
+  for (const std::size_t number : now.numbers) densities.push_back(case_.densities[number]);
   write_grain_csv(folder / "grains.csv",
                   {.grains = now.grains,
                    .clumps = case_.scene.clumps,
                    .groups = now.groups,
                    .densities = densities,
-                   .numbers = bodies_come_and_go(case_) ? numbers : std::span<const std::size_t>()},
+                   .numbers = bodies_come_and_go(case_) ? now.numbers : std::span<const std::size_t>()},
                   into.overwrite);
 }
 
@@ -305,7 +311,7 @@ void GrainRun::draw(const CommonOptions& into, const RunResult& result) const {
   std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
   for (const std::vector<Vec2>& places : result.record.paths) {
     std::vector<Vec2>& shown = paths.emplace_back();
-    for (const std::size_t number : simulation_.numbers()) shown.push_back(places[number]);
+    for (const std::size_t number : now.numbers) shown.push_back(places[number]);
   }
   write_grain_picture(*into.out, "picture",
                       {.title = case_.title,
@@ -313,7 +319,7 @@ void GrainRun::draw(const CommonOptions& into, const RunResult& result) const {
                        .grains = now.grains,
                        .clumps = case_.scene.clumps,
                        .groups = now.colours,
-                       .bonds = simulation_.holding_bonds().bonds,
+                       .bonds = now.bonds.bonds,
                        .walls = now.walls,
                        .started = case_.scene.grains,
                        .paths = paths},
@@ -341,12 +347,15 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
   if (case_.output.csv) {
     part("grains.csv", [this](const CommonOptions& into) { write_tables(into); });
     part("contacts.csv", [this](const CommonOptions& into) {
-      write_grain_contact_csv(*into.out / "contacts.csv", simulation_.present().contacts(), snapshot().walls,
-                              case_.body, into.overwrite);
+      const Snapshot now = snapshot();
+      std::vector<GrainContact> contacts = simulation_.present().contacts();
+      const auto place = [&](std::int32_t body) { return static_cast<std::int32_t>(now.places[body]); };
+      for (GrainContact& c : contacts) c.i = place(c.i), c.j = c.j < 0 ? c.j : place(c.j);
+      write_grain_contact_csv(*into.out / "contacts.csv", contacts, now.walls, case_.body, into.overwrite);
     });
     if (!simulation_.bonds().empty())
       part("bonds.csv", [this](const CommonOptions& into) {
-        const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
+        const StagedSimulation::HoldingBonds holding = snapshot().bonds;
         write_bond_csv(*into.out / "bonds.csv", holding.bonds, holding.strengths, into.overwrite);
       });
   }

@@ -51,8 +51,11 @@ class GrainRun final : public RunJob {
   struct Snapshot {
     std::vector<Grain> grains;
     std::vector<Wall> walls;
-    std::vector<std::string> groups = {};  ///< of each grain
-    std::vector<int> colours = {};         ///< likewise
+    StagedSimulation::HoldingBonds bonds;   ///< of the grains, which they number as they are here
+    std::vector<std::string> groups = {};   ///< of each grain
+    std::vector<int> colours = {};          ///< likewise
+    std::vector<std::size_t> numbers = {};  ///< likewise, in the run
+    std::vector<std::size_t> places = {};   ///< here of each number in the run
   };
   /// The bodies that are there now.
   [[nodiscard]] Snapshot snapshot() const;

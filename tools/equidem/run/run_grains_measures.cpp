@@ -107,7 +107,7 @@ void GrainMeasures::go_on(const Checkpoint& from) {
 void GrainMeasures::record(std::int64_t step, double time, bool regular) {
   measures_.set_shakings(shakings_of(resolved_, &simulation_));
   const GrainSimulation& present = simulation_.present();
-  const MeasuredMoment& moment = measures_.record(step, time, present.grains(), present.placed_walls());
+  const MeasuredMoment& moment = measures_.record(step, time, present.present_grains(), present.placed_walls());
   if (!table_) return;
   table_->add(step, cells_of(moment), regular);
   std::vector<double> cells{time};

@@ -23,7 +23,7 @@ void check_periods(const GrainScene& scene) {
                           cell.height != 0 ? cell.height : cell.shift),
               "walls bound it along y", "Leave it out, or repeat along xy");
   double largest = 0;
-  for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
+  for (const Grain& grain : scene.present()) largest = std::max(largest, grain.radius);
   const auto check_period = [&](const char* name, double period) {
     check_positive(period, fmt::format("{} of the periodic cell", name), "m");
     if (period > 4 * largest) return;
@@ -97,13 +97,12 @@ void check_deformation(const GrainScene& scene, const GrainOptions& options) {
 /// As refuse_long_ways_in_cell, before candidates are looked for as far as bodies may come.
 void check_speeds(const GrainScene& scene, const GrainOptions& options) {
   const double smallest = smallest_inscribed_radius(scene);
-  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-    const Grain& grain = scene.grains[g];
+  for (const Grain& grain : scene.present()) {
     const double turning = grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius;
     const double speed = norm(grain.velocity) + turning;
     if (speed * options.time_step <= smallest) continue;
-    bad_input(fmt::format("grain {} of the periodic cell moves {:.4g} m in a step of {:.4g} s", g,
-                          speed * options.time_step, options.time_step),
+    bad_input(fmt::format("grain {} of the periodic cell moves {:.4g} m in a step of {:.4g} s",
+                          &grain - scene.grains.data(), speed * options.time_step, options.time_step),
               fmt::format("it would pass through others: the smallest radius is {:.4g} m", smallest),
               fmt::format("Use a step below {:.3g} s, or give it a lower speed", 0.5 * smallest / speed));
   }

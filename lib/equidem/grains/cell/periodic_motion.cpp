@@ -118,7 +118,7 @@ void set_stress(GrainSystem& system, const CellSums& sums) {
 
 }  // namespace
 
-void set_cell(GrainSystem& system) {
+void set_cell(GrainSystem& system, const GrainSystem* before) {
   if (!system.scene.cell) return;
   const PeriodicCell& given = *system.scene.cell;
   MovingCell& cell = system.cell;
@@ -126,9 +126,10 @@ void set_cell(GrainSystem& system) {
   cell.deforms = given.deforms();
   cell.now = periods_of(given);
   cell.before = cell.next = cell.now;
-  cell.centre = given.corner + 0.5 * Vec2{given.width, cell.now.b.y};
+  cell.centre = before != nullptr ? before->cell.centre : given.corner + 0.5 * Vec2{given.width, cell.now.b.y};
   cell.sums.resize(system.bodies.blocks.count());
-  for (const Grain& grain : system.scene.grains) {
+  for (const std::size_t number : system.bodies.grain_of) {
+    const Grain& grain = system.scene.grains[number];
     cell.largest_radius = std::max(cell.largest_radius, grain.radius);
     cell.solid += area_of(grain, system.scene.clumps);
   }

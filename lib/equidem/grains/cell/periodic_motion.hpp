@@ -90,8 +90,8 @@ struct MovingCell : CellMotion {
 };
 
 /// Set the cell of the scene, and take bodies as their images inside it; before candidates are found for the first
-/// time.
-void set_cell(GrainSystem& system);
+/// time. \param before an earlier scene of the run, whose centre stays; null: there is none
+void set_cell(GrainSystem& system, const GrainSystem* before);
 
 /// Set stiffness and viscosity of the controls by the contacts of the last step.
 void measure_resistance(GrainSystem& system);

@@ -136,7 +136,7 @@ bool break_bonds(GrainSystem& system) {
 }
 
 void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& breaks) {
-  const std::size_t bonds = system.bonds.breakable ? system.bonds.tied.size() : 0;
+  const std::size_t bonds = system.bonds.breakable ? system.scene.bonds.size() : 0;
   std::vector<char> broken(bonds, 0);
   for (const BondBreak& event : breaks) {
     if (event.bond < bonds && std::exchange(broken[event.bond], char{1}) == 0) continue;
@@ -150,7 +150,7 @@ void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& break
 void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks) {
   BondList& bonds = system.bonds;
   bonds.breaks = std::move(breaks);
-  std::vector<char> broken(bonds.tied.size(), 0);
+  std::vector<char> broken(system.scene.bonds.size(), 0);
   for (const BondBreak& event : bonds.breaks) broken[event.bond] = 1;
   for (TiedPair& bond : bonds.tied) set_broken(system, bond, broken[bond.number] != 0);
 }

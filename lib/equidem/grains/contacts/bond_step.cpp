@@ -112,6 +112,7 @@ Rates largest_rates(const GrainScene& scene) {
   std::vector<Rates> of_grain(scene.grains.size());
   Rates largest;
   for (const GrainBond& bond : scene.bonds) {
+    if (!scene.ties(bond)) continue;
     const Rates own = rates_of(scene, bond);
     for (const std::size_t grain : {bond.i, bond.j}) {
       Rates& sum = of_grain[grain];
@@ -145,6 +146,7 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
   std::vector<TiedPair>& tied = system.bonds.tied;
   for (std::size_t b = 0; b < scene.bonds.size(); ++b) {
     const GrainBond& bond = scene.bonds[b];
+    if (!scene.ties(bond)) continue;
     TiedPair& pair = tied.emplace_back();
     pair.number = b;
     pair.i = system.bodies.place_of_grain[bond.i], pair.j = system.bodies.place_of_grain[bond.j];
@@ -154,7 +156,7 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
       rest = {-rest.branch, rest.angle_j, rest.angle_i};
     }
     pair.dashpots = {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot};
-    pair.share = share_of(system.scene.grains[pair.i], system.scene.grains[pair.j]);
+    pair.share = share_of(system.grain(pair.i), system.grain(pair.j));
     pair.angle_i = rest.angle_i, pair.angle_j = rest.angle_j;
     const ContactFrame frame = frame_of(rest.branch, pair.share);
     pair.springs = {rest.branch,

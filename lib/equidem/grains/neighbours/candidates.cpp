@@ -24,6 +24,13 @@ auto place(const Wall& wall) {
                     wall.end.y, wall.kind);
 }
 
+bool comes_later(const Grain& grain) {
+  return !grain.present;
+}
+bool comes_later(const Wall& /*wall*/) {
+  return false;
+}
+
 /// Clumps in one place differ by their discs, not by the caller's number of them.
 bool has_lesser_discs(const Grain& a, const Grain& b, const std::vector<Clump>& clumps) {
   if (a.clump < 0 || b.clump < 0) return a.clump < 0 && b.clump >= 0;
@@ -39,14 +46,17 @@ std::vector<std::size_t> sorted_by_place(const std::vector<Item>& items, const T
   std::vector<std::size_t> order(items.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const bool later_a = comes_later(items[a]), later_b = comes_later(items[b]);
+    if (later_a || later_b) return later_b && !later_a;
     const auto of_a = place(items[a]), of_b = place(items[b]);
     return of_a == of_b ? tie(items[a], items[b]) : of_a < of_b;
   });
   return order;
 }
 
-std::vector<std::int32_t> inverse(const std::vector<std::size_t>& order) {
-  std::vector<std::int32_t> places(order.size());
+/// The place of each of so many numbers; -1: it has none.
+std::vector<std::int32_t> inverse(const std::vector<std::size_t>& order, std::size_t count) {
+  std::vector<std::int32_t> places(count, -1);
   for (std::size_t k = 0; k < order.size(); ++k) places[order[k]] = static_cast<std::int32_t>(k);
   return places;
 }
@@ -55,20 +65,21 @@ std::vector<std::int32_t> inverse(const std::vector<std::size_t>& order) {
 
 void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vector<std::size_t>& order) {
   const auto lesser = [&](const Grain& a, const Grain& b) { return has_lesser_discs(a, b, scene.clumps); };
-  system.bodies.grain_of = order.empty() ? sorted_by_place(scene.grains, lesser) : order;
+  system.bodies.order = order.empty() ? sorted_by_place(scene.grains, lesser) : order;
+  for (const std::size_t number : system.bodies.order)
+    if (scene.grains[number].present) system.bodies.grain_of.push_back(number);
   system.walls.wall_of = sorted_by_place(scene.walls, [](const Wall&, const Wall&) { return false; });
-  system.bodies.place_of_grain = inverse(system.bodies.grain_of);
-  system.walls.place_of_wall = inverse(system.walls.wall_of);
+  system.bodies.place_of_grain = inverse(system.bodies.grain_of, scene.grains.size());
+  system.walls.place_of_wall = inverse(system.walls.wall_of, scene.walls.size());
   system.scene = scene;
-  for (std::size_t k = 0; k < scene.grains.size(); ++k) {
-    const Grain& grain = scene.grains[system.bodies.grain_of[k]];
-    system.scene.grains[k] = grain;
+  for (const std::size_t number : system.bodies.grain_of) {
+    const Grain& grain = scene.grains[number];
     system.bodies.constants.push_back({grain.radius, 1 / grain.inertia.mass, 1 / grain.inertia.moment, grain.kind});
     system.bodies.motions.push_back({grain.position, grain.velocity, grain.spin, grain.angle});
   }
   for (std::size_t k = 0; k < scene.walls.size(); ++k) system.scene.walls[k] = scene.walls[system.walls.wall_of[k]];
   system.walls.given = system.scene.walls;
-  system.bodies.impulses.resize(scene.grains.size());
+  system.bodies.impulses.resize(system.bodies.motions.size());
   system.walls.places.resize(scene.walls.size());
   system.walls.loads.resize(scene.walls.size());
   place_parts(system);

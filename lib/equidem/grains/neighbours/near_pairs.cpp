@@ -25,7 +25,7 @@ PairLaw law_of(const ContactConstants& constants) {
 std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
   std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
   for (const Wall& wall : scene.walls) of_walls[wall.kind] = true;
-  for (const Grain& grain : scene.grains) met[grain.kind] = true;
+  for (const Grain& grain : scene.present()) met[grain.kind] = true;
   for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];
   std::vector<const PairProperties*> pairs;
   for (int a = 0; a < scene.kinds; ++a) {
@@ -173,8 +173,8 @@ double margin_of_near_pairs(const GrainSystem& system, double size, double reach
 
 void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.contacts.near;
-  const std::vector<Grain>& grains = system.scene.grains;
-  const bool discs = std::ranges::any_of(grains, [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
+  const bool discs =
+      std::ranges::any_of(system.scene.present(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
   if (!discs || !gives_force(system.options.law)) return;
   near.active = true;
   if (const std::optional<PairLaw> law = common_law(system)) {

@@ -16,7 +16,8 @@ namespace equidem {
 
 void place_parts(GrainSystem& system) {
   if (!has_shapes(system.scene)) return;
-  for (const Grain& grain : system.scene.grains) {
+  for (const std::size_t number : system.bodies.grain_of) {
+    const Grain& grain = system.scene.grains[number];
     system.shapes.first_part.push_back(static_cast<std::int32_t>(system.shapes.parts.size()));
     const std::vector<GrainPart> parts = parts_of(grain, system.scene.clumps);
     const auto body = static_cast<std::int32_t>(system.shapes.first_part.size() - 1);
@@ -306,7 +307,7 @@ void NearParts::List::move_state(std::size_t from, std::size_t to) {
 
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   const auto is_disc = [&](std::int32_t body) {
-    return system.scene.grains[system.body_of(body)].shape() == GrainShape::disc;
+    return system.grain(system.body_of(body)).shape() == GrainShape::disc;
   };
   return is_disc(i) && is_disc(j);
 }

@@ -59,8 +59,9 @@ void check_shape(const GrainScene& scene, std::size_t i) {
               "Use numbers from 0 to one less than that, -1 for no clump");
   }
   // grains of the same clump and radius are checked once
-  const bool known = i > 0 && scene.grains[i - 1].clump == grain.clump && scene.grains[i - 1].radius == grain.radius;
-  if (!known) check_clump(scene.clumps[grain.clump], grain, i);
+  const Grain& before = scene.grains[i > 0 ? i - 1 : 0];
+  if (i == 0 || !before.present || before.clump != grain.clump || before.radius != grain.radius)
+    check_clump(scene.clumps[grain.clump], grain, i);
 }
 
 void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options) {
@@ -72,7 +73,7 @@ void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options) 
   }
   for (std::size_t i = 0; i < scene.grains.size(); ++i) {
     const Grain& grain = scene.grains[i];
-    if (grain.shape() != GrainShape::disc) continue;
+    if (!grain.present || grain.shape() != GrainShape::disc) continue;
     const double factor = grain.inertia.moment / (grain.inertia.mass * grain.radius * grain.radius);
     if (!(std::abs(factor - inertia_factor(Body::sphere)) <= 1e-9)) continue;
     bad_input(fmt::format("grain {} is a sphere (its moment of inertia is 2/5 m r²) among ellipses or clumps", i),
@@ -219,38 +220,6 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
   bad_input_at(where ? where(grain) : "", std::move(problem), std::move(why), std::move(remedy));
 }
 
-/// Nothing may start inside something else.
-void check_places(const GrainScene& scene, const PlaceOfGrain& where, std::span<const std::int32_t> origins) {
-  std::vector<Circle> circles;
-  for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
-  std::optional<Periods> periods;
-  if (const auto& cell = scene.cell) {
-    periods = periods_of(*cell);
-    const Vec2 centre = cell->corner + 0.5 * Vec2{cell->width, cell->height};
-    for (Circle& circle : circles) circle.centre += periods->shift(image_inside(*periods, centre, circle.centre));
-  }
-  for (const CirclePair& pair : pairs_within(circles, periods, 0)) {
-    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
-    if (!origins.empty() && origins[i] >= 0 && origins[j] >= 0) continue;
-    const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
-    if (!are_inside_one_another(outline_of(scene.grains[i], scene.clumps), outline_of(scene.grains[j], scene.clumps),
-                                branch))
-      continue;
-    refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
-                 fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", norm(branch),
-                             circles[i].radius, circles[j].radius),
-                 "Move them apart");
-  }
-  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
-    for (const Wall& wall : scene.walls) {
-      if (!is_behind(scene, scene.grains[i], wall)) continue;
-      refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
-                   "a contact could not tell which way is out",
-                   wall.shape == Wall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
-    }
-  }
-}
-
 void check_bond(const GrainScene& scene, const GrainBond& bond) {
   for (const std::size_t grain : {bond.i, bond.j}) {
     if (grain >= scene.grains.size()) {
@@ -259,6 +228,9 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
           fmt::format("there are {}, counted from 0", counted(static_cast<long long>(scene.grains.size()), "grain")),
           "Correct the number");
     }
+  }
+  if (!scene.ties(bond)) return;
+  for (const std::size_t grain : {bond.i, bond.j}) {
     if (scene.grains[grain].shape() == GrainShape::disc) continue;
     bad_input(fmt::format("a bond ties grain {}, which is no disc", grain),
               "bonds lie on the line of the centres of discs",
@@ -279,7 +251,7 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
   }
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
   const double distance = norm(rest_of(scene, bond.i, bond.j).branch);
-  if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
+  if (!bond.rest && !(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
     bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
               "a bond lies along the line between them", "Move them apart");
   }
@@ -295,13 +267,53 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
 double reference_length(const GrainScene& scene, const GrainOptions& options) {
   if (options.reference_length > 0) return options.reference_length;
   double largest = 0;
-  for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
+  for (const Grain& grain : scene.present()) largest = std::max(largest, grain.radius);
   return 2 * largest;
 }
 
-void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where,
-           std::span<const std::int32_t> origins) {
-  if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
+  check_properties(scene, options, where);
+  check_places(scene, where, {});
+  check_bonds(scene, options);
+}
+
+void check_places(const GrainScene& scene, const PlaceOfGrain& where, std::span<const std::int32_t> begun) {
+  std::vector<Circle> circles;
+  std::vector<std::size_t> numbers;
+  for (const Grain& grain : scene.present()) {
+    circles.push_back({grain.position, grain.radius});
+    numbers.push_back(static_cast<std::size_t>(&grain - scene.grains.data()));
+  }
+  std::optional<Periods> periods;
+  if (const auto& cell = scene.cell) {
+    periods = periods_of(*cell);
+    const Vec2 centre = cell->corner + 0.5 * Vec2{cell->width, cell->height};
+    for (Circle& circle : circles) circle.centre += periods->shift(image_inside(*periods, centre, circle.centre));
+  }
+  for (const CirclePair& pair : pairs_within(circles, periods, 0)) {
+    const std::size_t i = numbers[pair.i], j = numbers[pair.j.body];
+    if (!begun.empty() && begun[i] >= 0 && begun[j] >= 0) continue;
+    const Vec2 branch = circles[pair.j.body].centre + pair.shift - circles[pair.i].centre;
+    if (!are_inside_one_another(outline_of(scene.grains[i], scene.clumps), outline_of(scene.grains[j], scene.clumps),
+                                branch))
+      continue;
+    refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
+                 fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", norm(branch),
+                             scene.grains[i].radius, scene.grains[j].radius),
+                 "Move them apart");
+  }
+  for (const std::size_t i : numbers) {
+    for (const Wall& wall : scene.walls) {
+      if (!is_behind(scene, scene.grains[i], wall)) continue;
+      refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
+                   "a contact could not tell which way is out",
+                   wall.shape == Wall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
+    }
+  }
+}
+
+void check_properties(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
+  if (scene.present().empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
   check_bounds(options, option_bounds, [] { return ""; });
   check_laws_of_shapes(scene, options);
   if (!gives_force(options.law) && options.verlet()) {
@@ -312,6 +324,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
     bad_input("gravity is not a number", "nothing could fall by it", "Give finite numbers");
   }
   for (std::size_t i = 0; i < scene.grains.size(); ++i) {
+    if (!scene.grains[i].present) continue;
     try {
       check_grain(scene, i);
       check_shape(scene, i);
@@ -340,8 +353,6 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   check_table(scene, options);
   if (scene.cell) check_cell(scene, options);
-  check_places(scene, where, origins);
-  check_bonds(scene, options);
 }
 
 void check_bonds(const GrainScene& scene, const PlaceOfBond& where) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,7 +42,8 @@ struct Grain {
   int kind = 0;      ///< row of the table of pairs
   /// Ellipse: the short half-axis, m; at angle 0 the long half-axis lies along x. 0: not an ellipse.
   double short_half_axis = 0;
-  int clump = -1;  ///< index in GrainScene::clumps; -1: not a clump
+  int clump = -1;       ///< index in GrainScene::clumps; -1: not a clump
+  bool present = true;  ///< false: a body of the run that has gone or comes later, of which nothing else is read
 
   [[nodiscard]] GrainShape shape() const {
     if (clump >= 0) return GrainShape::clump;
@@ -91,7 +93,8 @@ struct PairProperties {
   bool operator==(const PairProperties&) const = default;
 };
 
-/// Bodies, bonds and the properties of contacts, besides walls and gravity.
+/// Bodies, bonds and the properties of contacts, besides walls and gravity. In a run whose stages change them, bodies
+/// and bonds keep their numbers: a bond counts where both of its bodies are present.
 struct GrainScene : AnyScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps;  ///< shapes, each used by any number of grains
@@ -102,6 +105,8 @@ struct GrainScene : AnyScene {
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row
 
   [[nodiscard]] const PairProperties& between(int a, int b) const { return pairs[a * kinds + b]; }
+  [[nodiscard]] auto present() const { return grains | std::views::filter(&Grain::present); }
+  [[nodiscard]] bool ties(const GrainBond& bond) const { return grains[bond.i].present && grains[bond.j].present; }
 };
 
 struct GrainOptions {
@@ -168,10 +173,12 @@ using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 ///         grain_scene.hpp, the time step not positive, grains that start inside one another (centre within the other)
 ///         or with the centre behind a line
 /// \param where place of a grain in the user's input, for error messages; may be empty
-/// \param origins of the bodies, as SceneOrigins::bodies; two that a run has brought into one another, as bonds without
-///        springs do, stay so; empty: all are new
-void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {},
-           std::span<const std::int32_t> origins = {});
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
+/// The same, but for the places of the bodies and for bonds.
+void check_properties(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
+/// The places alone. \param begun not negative: the body is there already. Two that a run has brought into one another,
+/// as bonds without springs do, stay so; empty: all are new
+void check_places(const GrainScene& scene, const PlaceOfGrain& where, std::span<const std::int32_t> begun);
 
 /// \throws Error (bad_input): bonds of bodies that do not exist or are not discs, of a body with itself, or of the same
 ///         two a second time; centres that coincide; dashpots and springs that are negative, not finite or all 0

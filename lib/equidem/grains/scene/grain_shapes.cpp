@@ -20,8 +20,7 @@ Inertia inertia_of_clump(const Clump& clump, double density) {
 }
 
 bool has_shapes(const GrainScene& scene) {
-  return std::any_of(scene.grains.begin(), scene.grains.end(),
-                     [](const Grain& grain) { return grain.shape() != GrainShape::disc; });
+  return std::ranges::any_of(scene.present(), [](const Grain& grain) { return grain.shape() != GrainShape::disc; });
 }
 
 std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& clumps) {
@@ -44,7 +43,7 @@ std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& cl
 
 double smallest_inscribed_radius(const GrainScene& scene) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (const Grain& grain : scene.grains)
+  for (const Grain& grain : scene.present())
     smallest = std::min(smallest, inscribed_radius(outline_of(grain, scene.clumps)));
   return smallest;
 }

@@ -370,6 +370,7 @@ std::vector<PairProperties> pairs_at(const ContactTable& contacts, NormalLaw law
 std::vector<KindMasses> masses_of_kinds(std::span<const Grain> grains, int kind_count) {
   std::vector<KindMasses> kinds(static_cast<std::size_t>(kind_count));
   for (const Grain& grain : grains) {
+    if (!grain.present) continue;
     KindMasses& kind = kinds[grain.kind];
     const double mass = grain.inertia.mass;
     if (kind.grains++ == 0) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -13,36 +12,31 @@
 namespace equidem {
 namespace {
 
-/// Places of bodies and walls in the loops of two simulations, one after the other; -1: there is none.
+/// Bodies and walls in the loops of two simulations of a run, one after the other.
 struct Places {
-  std::vector<std::int32_t> bodies_now, bodies_then;  ///< of the bodies of the first, and of those of the second
-  std::vector<std::int32_t> walls_now, walls_then;
+  const GrainSystem &old, &own;
+  std::vector<std::int32_t> walls_then = {};  ///< of the walls of the second in the first; -1: they are new
 
-  Places(const GrainSystem& old, const GrainSystem& own, const SceneOrigins& origins)
-      : bodies_now(old.bodies.grain_of.size(), -1),
-        bodies_then(own.bodies.grain_of.size(), -1),
-        walls_now(old.scene.walls.size(), -1),
-        walls_then(own.scene.walls.size(), -1) {
-    for (std::size_t k = 0; k < bodies_then.size(); ++k) {
-      const std::int32_t origin = origins.bodies[own.bodies.grain_of[k]];
-      if (origin < 0) continue;
-      bodies_then[k] = old.bodies.place_of_grain[origin];
-      bodies_now[bodies_then[k]] = static_cast<std::int32_t>(k);
-    }
-    for (std::size_t w = 0; w < walls_then.size(); ++w) {
-      const std::int32_t origin = origins.walls[own.walls.wall_of[w]];
-      if (origin < 0) continue;
-      walls_then[w] = static_cast<std::int32_t>(old.walls.place_of_wall[origin]);
-      walls_now[walls_then[w]] = static_cast<std::int32_t>(w);
-    }
+  Places(const GrainSystem& first, const GrainSystem& second, const std::vector<std::int32_t>& walls)
+      : old(first), own(second) {
+    for (const std::size_t wall : own.walls.wall_of)
+      walls_then.push_back(walls[wall] < 0 ? -1 : old.walls.place_of_wall[walls[wall]]);
   }
   /// The number that a body or a wall (negative) of the first has now, as Candidate::j; none: it is gone.
   [[nodiscard]] std::optional<std::int32_t> partner(std::int32_t j) const {
-    const std::int32_t now = j >= 0 ? bodies_now[j] : walls_now[~j];
-    if (now < 0) return {};
-    return j >= 0 ? now : ~now;
+    if (j >= 0) {
+      const std::int32_t now = own.bodies.place_of_grain[old.bodies.grain_of[j]];
+      return now < 0 ? std::optional<std::int32_t>() : now;
+    }
+    const auto now = std::ranges::find(walls_then, ~j);
+    if (now == walls_then.end()) return {};
+    return ~static_cast<std::int32_t>(now - walls_then.begin());
   }
-  [[nodiscard]] bool is_new(std::int32_t j) const { return (j >= 0 ? bodies_then[j] : walls_then[~j]) < 0; }
+  /// The number of a body of the second in the first; -1: it is new.
+  [[nodiscard]] std::int32_t then(std::int32_t body) const {
+    return old.bodies.place_of_grain[own.bodies.grain_of[body]];
+  }
+  [[nodiscard]] bool is_new(std::int32_t j) const { return (j >= 0 ? then(j) : walls_then[~j]) < 0; }
 };
 
 /// Impulses of bodies; none where steps do not need those of the last one.
@@ -69,36 +63,22 @@ bool is_tied(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   return at != system.bonds.tied.end() && at->i == i && at->j == j && !at->broken;
 }
 
-/// Whether a contact has friction. \param i, j as in Candidate
-bool has_friction(const GrainSystem& system, std::int32_t i, std::int32_t j) {
-  return system.properties(i, j).friction > 0;
-}
-
 /// The image of j that i has in a fresh state, whose bodies are inside the cell, where bodies of both simulations stay
 /// where they were without it; new bodies stay inside.
 void move_image(const Places& places, const GrainState& fresh, std::int32_t i, std::int32_t j, PeriodicImage& image) {
-  const auto moved = [&](std::int32_t body) {
-    return places.bodies_then[body] < 0 ? PeriodicImage{} : fresh.crossed[body];
-  };
+  const auto moved = [&](std::int32_t body) { return places.is_new(body) ? PeriodicImage{} : fresh.crossed[body]; };
   image.a += moved(i).a - moved(j).a;
   image.b += moved(i).b - moved(j).b;
 }
 
-/// Breaks, and the states of bonds that both have; bonds whose discs are gone push no more.
-void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& places, const SceneOrigins& origins,
-                     const GrainState& fresh, GrainState& state) {
-  state.breaks.clear();
-  for (BondBreak event : old.bonds.breaks) {
-    const auto now = std::ranges::find(origins.bonds, static_cast<std::int32_t>(event.bond));
-    if (now == origins.bonds.end()) continue;
-    event.bond = static_cast<std::size_t>(now - origins.bonds.begin());
-    state.breaks.push_back(event);
-  }
+/// The states of bonds that both have; bonds whose discs are gone push no more.
+void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& places, const GrainState& fresh,
+                     GrainState& state) {
   restore_breaks(own, state.breaks);
   state.bonds = fresh.bonds;
   for (std::size_t b = 0; b < state.bonds.size(); ++b) {
     const TiedPair& bond = own.bonds.tied[b];
-    const std::int32_t i = places.bodies_then[bond.i], j = places.bodies_then[bond.j];
+    const std::int32_t i = places.then(bond.i), j = places.then(bond.j);
     if (i >= 0 && j >= 0 && is_tied(old, i, j)) {
       state.bonds[b] = state_of(old, *place_of_bond(old.bonds.tied, i, j));
       continue;
@@ -116,12 +96,13 @@ void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& pla
   }
 }
 
-/// Rows in the order of one simulation from those of another one. \param rows of what is new, and the length
-template <class Row>
-std::vector<Row> rows_now(const std::vector<Row>& then, std::vector<Row> rows,
-                          const std::vector<std::int32_t>& places_then) {
-  for (std::size_t k = 0; k < rows.size() && !then.empty(); ++k)
-    if (places_then[k] >= 0) rows[k] = then[places_then[k]];
+/// Rows in the order of one simulation from those of another one.
+/// \param rows of what is new, and the length
+/// \param then the row in the other one, negative: it has none
+template <class Row, class Then>
+std::vector<Row> rows_now(const std::vector<Row>& rows_then, std::vector<Row> rows, const Then& then) {
+  for (std::size_t k = 0; k < rows.size() && !rows_then.empty(); ++k)
+    if (const std::int32_t from = then(static_cast<std::int32_t>(k)); from >= 0) rows[k] = rows_then[from];
   return rows;
 }
 
@@ -143,7 +124,7 @@ void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Pl
       contact.i = *i;
       contact.j = *j;
       // without friction there is no spring; later friction begins anew
-      if (!has_friction(own, *i, *j)) contact.stretch = 0;
+      if (!(own.properties(*i, *j).friction > 0)) contact.stretch = 0;
       if (!(own.properties(*i, *j).rolling_friction > 0)) contact.rolling_stretch = 0;
       kept.push_back(contact);
     }
@@ -187,46 +168,58 @@ bool begin_controls(const GrainSystem& old, GrainSystem& own) {
 
 }  // namespace
 
-void GrainSimulation::change(const GrainScene& scene, const SceneOrigins& origins) {
+void GrainSimulation::change(GrainScene scene, const std::vector<std::int32_t>& walls) {
   const GrainSystem& system = implementation_->system;
-  check(scene, system.options, {}, origins.bodies);
-  std::vector<std::size_t> order(origins.bodies.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t body) {
-    return origins.bodies[body] < 0 ? INT32_MAX : system.bodies.place_of_grain[origins.bodies[body]];
-  });
-  auto next = hidden<Implementation>(scene, system.options, order);
-  next->take_over(*implementation_, origins);
+  if (scene.cell && system.cell.active) {
+    const PeriodicCell now = *placed_cell();
+    std::tie(scene.cell->width, scene.cell->height, scene.cell->shift) = std::tie(now.width, now.height, now.shift);
+  }
+  check_properties(scene, system.options);
+  check_places(scene, {}, system.bodies.place_of_grain);
+  check_bonds(scene, system.options);
+  auto next = hidden<Implementation>(scene, system.options, &system);
+  next->begin();
+  next->take_over(*implementation_, walls);
   implementation_ = std::move(next);
 }
 
-void GrainSimulation::Implementation::take_over(const Implementation& before, const SceneOrigins& origins) {
+void GrainSimulation::restore(const GrainScene& scene, const SavedState& state) {
+  const GrainSystem& system = implementation_->system;
+  check_properties(scene, system.options);
+  check_bonds(scene, system.options);
+  auto next = hidden<Implementation>(scene, system.options, &system);
+  next->restore(state);
+  implementation_ = std::move(next);
+}
+
+void GrainSimulation::Implementation::take_over(const Implementation& before, const std::vector<std::int32_t>& walls) {
   const GrainSystem& old = before.system;
   GrainSystem& own = system;
-  const Places places(old, own, origins);
+  const Places places(old, own, walls);
+  const auto body_then = [&](std::int32_t body) { return places.then(body); };
   const GrainState fresh = this->state();
   GrainState state = before.state();
-  state.motions = rows_now(state.motions, fresh.motions, places.bodies_then);
-  state.crossed = rows_now(state.crossed, fresh.crossed, places.bodies_then);
+  state.motions = rows_now(state.motions, fresh.motions, body_then);
+  state.crossed = rows_now(state.crossed, fresh.crossed, body_then);
   // impulses of bodies that are gone are still needed
   state.impulses = state.impulses.empty()
                        ? fresh.impulses
-                       : rows_now(state.impulses, std::vector<BodyImpulse>(fresh.impulses.size()), places.bodies_then);
-  take_over_bonds(old, own, places, origins, fresh, state);
+                       : rows_now(state.impulses, std::vector<BodyImpulse>(fresh.impulses.size()), body_then);
+  take_over_bonds(old, own, places, fresh, state);
   take_over_contacts(old, own, places, fresh, state);
   state.start = fresh.start;
   // walls and servos that both have go on
-  state.walls = rows_now(state.walls, fresh.walls, places.walls_then);
-  std::vector<std::int32_t> servos_then;
-  for (const ServoState& servo : own.walls.servos) {
+  state.walls = rows_now(state.walls, fresh.walls, [&](std::int32_t wall) { return places.walls_then[wall]; });
+  state.servos = rows_now(state.servos, fresh.servos, [&](std::int32_t servo) {
     const auto then = std::ranges::find_if(old.walls.servos, [&](const ServoState& other) {
-      return static_cast<std::int32_t>(other.wall) == places.walls_then[servo.wall];
+      return static_cast<std::int32_t>(other.wall) == places.walls_then[own.walls.servos[servo].wall];
     });
-    servos_then.push_back(then == old.walls.servos.end() ? -1
-                                                         : static_cast<std::int32_t>(then - old.walls.servos.begin()));
+    return static_cast<std::int32_t>(then == old.walls.servos.end() ? -1 : then - old.walls.servos.begin());
+  });
+  for (std::size_t k = 0; k < state.servos.size(); ++k) {
+    state.servos[k].way = 0;  // what servo walls have gone is in their places
+    state.servos[k].farthest = fresh.servos[k].farthest;
   }
-  state.servos = rows_now(state.servos, fresh.servos, servos_then);
-  for (ServoMotion& servo : state.servos) servo.way = 0;  // what servo walls have gone is in their places
   go_back_to(state);
   // bodies that have left the cell are where they are, not at their images inside
   at_start.potential = potential_and_kinetic().first;

@@ -35,33 +35,25 @@ bool BodyChoice::holds(const Grain& grain) const {
   return box->low.x <= at.x && at.x <= box->high.x && box->low.y <= at.y && at.y <= box->high.y;
 }
 
-PresentBodies change_bodies(const PresentBodies& before, const StageBodies& how, std::size_t first_added,
-                            std::vector<std::int32_t>& origins, StageReport& report) {
-  PresentBodies now;
-  const auto put = [&](std::size_t number, const Grain& grain, std::int32_t origin) {
-    now.numbers.push_back(number);
-    now.grains.push_back(grain);
-    origins.push_back(origin);
-  };
+void change_bodies(std::vector<Grain>& bodies, const StageBodies& how, std::size_t first_added, StageReport& report) {
   std::vector<char> removes(how.removed.size(), 0), renames(how.renamed.size(), 0);
-  for (std::size_t k = 0; k < before.grains.size(); ++k) {
-    Grain grain = before.grains[k];
-    bool goes = false;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    Grain& grain = bodies[k];
+    if (!grain.present) continue;
     for (std::size_t c = 0; c < how.removed.size(); ++c)
-      if (how.removed[c].holds(grain)) goes = true, removes[c] = 1;
-    report.removed += goes ? 1 : 0;
-    if (goes) continue;
+      if (how.removed[c].holds(grain)) grain.present = false, removes[c] = 1;
+    report.removed += grain.present ? 0 : 1;
+    if (!grain.present) continue;
+    const int kind = grain.kind;
     for (std::size_t c = 0; c < how.renamed.size(); ++c)
-      if (how.renamed[c].which.holds(grain)) grain.kind = how.renamed[c].kinds[before.numbers[k]], renames[c] = 1;
-    report.renamed += grain.kind != before.grains[k].kind ? 1 : 0;
-    put(before.numbers[k], grain, static_cast<std::int32_t>(k));
+      if (how.renamed[c].which.holds(grain)) grain.kind = how.renamed[c].kinds[k], renames[c] = 1;
+    report.renamed += grain.kind != kind ? 1 : 0;
   }
   report.idle_removals = idle(removes);
   report.idle_renamings = idle(renames);
-  for (std::size_t k = 0; k < how.added.size(); ++k) put(first_added + k, how.added[k], -1);
-  if (now.grains.empty())
+  std::ranges::copy(how.added, bodies.begin() + static_cast<std::ptrdiff_t>(first_added));
+  if (std::ranges::none_of(bodies, &Grain::present))
     bad_input("all bodies are removed", "there is nothing left to move", "Remove fewer, or add some");
-  return now;
 }
 
 std::vector<std::int32_t> wall_origins(const GrainStage& stage, const GrainStage& before) {
@@ -180,15 +172,18 @@ BondRest rest_under(const GrainContact& contact, const GrainBond& bond, const Bo
 std::set<PairOfGrains> near_discs(const GrainScene& scene, double gap_tolerance) {
   constexpr double rounding_gap = 1e-9;  // of the smaller radius
   std::vector<Circle> circles;           // larger by the gap
-  for (const Grain& grain : scene.grains)
+  std::vector<std::size_t> numbers;
+  for (const Grain& grain : scene.present()) {
     circles.push_back({grain.position, grain.radius * (1 + gap_tolerance + 2 * rounding_gap)});
+    numbers.push_back(static_cast<std::size_t>(&grain - scene.grains.data()));
+  }
   std::optional<Periods> periods;
   if (scene.cell) periods = periods_of(*scene.cell);
   std::set<PairOfGrains> pairs;
   for (const CirclePair& near : pairs_within(circles, periods, 0)) {
-    const auto i = static_cast<std::size_t>(near.i), j = static_cast<std::size_t>(near.j.body);
+    const std::size_t i = numbers[near.i], j = numbers[near.j.body];
     const double r = scene.grains[i].radius, s = scene.grains[j].radius;
-    const double gap = norm(circles[j].centre + near.shift - circles[i].centre) - r - s;
+    const double gap = norm(circles[near.j.body].centre + near.shift - circles[near.i].centre) - r - s;
     if (i != j && gap <= std::max(rounding_gap * std::min(r, s), gap_tolerance * (r + s))) pairs.insert({i, j});
   }
   return pairs;
@@ -229,23 +224,19 @@ double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds,
 }
 
 std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const GrainContact> contacts,
-                                  std::span<const std::int32_t> origins, std::span<const GrainBond> known,
                                   const StageBonds& how) {
   std::set<PairOfGrains> tied;
-  for (const GrainBond& bond : known) tied.insert(std::minmax(bond.i, bond.j));
+  for (const GrainBond& bond : scene.bonds) tied.insert(std::minmax(bond.i, bond.j));
   std::map<std::pair<std::int32_t, std::int32_t>, const GrainContact*> pressed;
   for (const GrainContact& contact : contacts)
     if (contact.j >= 0) pressed[{contact.i, contact.j}] = &contact;
-  const auto origin = [&](std::size_t body) {
-    return origins.empty() ? static_cast<std::int32_t>(body) : origins[body];
-  };
   std::vector<GrainBond> made;
   for (const PairOfGrains& near : near_discs(scene, how.gap_tolerance)) {
     if (tied.contains(near)) continue;
     GrainBond& bond = made.emplace_back(how.like);
     std::tie(bond.i, bond.j) = near;
     bond.rest = rest_of(scene, bond.i, bond.j);
-    const auto at = pressed.find({origin(bond.i), origin(bond.j)});
+    const auto at = pressed.find({static_cast<std::int32_t>(bond.i), static_cast<std::int32_t>(bond.j)});
     if (at != pressed.end()) bond.rest = rest_under(*at->second, bond, *bond.rest);
   }
   return made;

@@ -31,14 +31,12 @@ struct StageBonds {
 /// The new bonds, ordered by i, then j > i. Discs that press each other keep their force: with f_N, f_T the normal
 /// (compression positive) and tangential force of the contact, the bond is at rest at |l0| = |l| + f_N/kN, turned by
 /// f_T |l|/(kT |l0|²), so that its springs carry what the contact did. A spring that the bond lacks carries nothing.
-/// \param scene its bodies, and its periodic cell with the present periods
-/// \param contacts of the last step, between bodies as they were numbered in it
-/// \param origins those numbers of the bodies of the scene, ascending; -1: there was none; empty: they are the same
-/// \param known bonds so far, broken ones too: their discs are not bonded again
+/// \param scene its bodies, its periodic cell with the present periods, and its bonds so far, broken ones too: their
+///        discs are not bonded again
+/// \param contacts of the last step
 /// \throws Error (bad_input) where a spring is so soft that it would have to be pressed to half its length, or turned
 ///         by more than a right angle, to carry the force of the contact
 std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const GrainContact> contacts,
-                                  std::span<const std::int32_t> origins, std::span<const GrainBond> known,
                                   const StageBonds& how);
 
 /// \throws Error (bad_input): a grain that is no disc, bonds that no law or step of the options allows, as check_bonds
@@ -69,13 +67,6 @@ struct StageBodies {
   std::vector<Grain> added = {};
 
   [[nodiscard]] bool change() const { return !removed.empty() || !renamed.empty() || !added.empty(); }
-};
-
-/// The bodies that are there. A body keeps its number in the run: those of the first scene come first, then those that
-/// stages add.
-struct PresentBodies {
-  std::vector<std::size_t> numbers;  ///< ascending
-  std::vector<Grain> grains;         ///< in the same order
 };
 
 /// What ends a stage before its limit; all that is given must hold.
@@ -152,12 +143,11 @@ std::vector<std::string> active_effects(const Effects& effects);
 /// \throws Error (bad_input) if a wall that stands would jump where its schedules begin
 void check_start(const Wall& wall);
 
-/// \param[out] origins place of each body among those before; -1: it is new
+/// \param[in,out] bodies all of the run, by their numbers
 /// \param[out] report its counts of bodies
-/// \param first_added number in the run of the first body that is added
+/// \param first_added number of the first body that is added
 /// \throws Error (bad_input) if no body is left
-PresentBodies change_bodies(const PresentBodies& before, const StageBodies& how, std::size_t first_added,
-                            std::vector<std::int32_t>& origins, StageReport& report);
+void change_bodies(std::vector<Grain>& bodies, const StageBodies& how, std::size_t first_added, StageReport& report);
 
 /// The number of each wall of a stage in the stage before; -1: it is new.
 std::vector<std::int32_t> wall_origins(const GrainStage& stage, const GrainStage& before);

@@ -31,28 +31,6 @@ std::size_t index_of(const std::vector<WallState>& walls, const std::string& nam
   return static_cast<std::size_t>(std::ranges::find(walls, name, &WallState::name) - walls.begin());
 }
 
-double component_of(const Voigt& strain, StageEnd::CellStrain which) {
-  switch (which) {
-    case StageEnd::CellStrain::xx:
-      return strain.xx;
-    case StageEnd::CellStrain::yy:
-      return strain.yy;
-    case StageEnd::CellStrain::xy:
-      break;
-  }
-  return strain.xy;
-}
-
-/// Places among the bonds of a scene of those of another one; both lists are numbers in the run, ascending.
-std::vector<std::int32_t> bond_origins(const std::vector<std::size_t>& before, const std::vector<std::size_t>& now) {
-  std::vector<std::int32_t> origins;
-  for (const std::size_t bond : now) {
-    const auto at = std::ranges::lower_bound(before, bond);
-    origins.push_back(at != before.end() && *at == bond ? static_cast<std::int32_t>(at - before.begin()) : -1);
-  }
-  return origins;
-}
-
 /// d_c is that of the first scene in all stages.
 GrainOptions with_length(GrainOptions options, const GrainScene& scene) {
   options.reference_length = reference_length(scene, options);
@@ -71,9 +49,8 @@ StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOp
       stages_(checked(std::move(stages), options)),
       options_(with_length(options, stages_.front().scene)),
       effects_(effects_of(stages_, options_)),
-      start_(start_of_first()),
       bonds_(bonds_at_start()),
-      present_(scene_of(std::array{StageReport{}}, start_, bonds_), options_) {
+      present_(scene_of(std::array{StageReport{}}, bodies_at_start(), start_, bonds_), options_) {
   energies_.initial = present_.energy().initial;
   reports_.push_back({.name = stages_.front().name,
                       .effects = active_effects(present_.effects()),
@@ -118,8 +95,9 @@ bool StagedSimulation::holds(const StageEnd& end) {
     all = all && report.displacement >= end.displacement;
   }
   if (end.strain > 0 && end.of_cell) {
-    report.strain =
-        std::abs(component_of(present_.cell()->strain, *end.of_cell) - component_of(start_.strain, *end.of_cell));
+    constexpr double Voigt::*components[] = {&Voigt::xx, &Voigt::yy, &Voigt::xy};  // of StageEnd::CellStrain
+    const auto which = components[static_cast<std::size_t>(*end.of_cell)];
+    report.strain = std::abs(present_.cell()->strain.*which - start_.strain.*which);
     all = all && report.strain >= end.strain;
   } else if (end.strain > 0) {
     const std::size_t a = index_of(walls, end.walls[0]), b = index_of(walls, end.walls[1]);
@@ -162,43 +140,20 @@ void StagedSimulation::refuse_endless() const {
               stage.where());
 }
 
-std::vector<BondBreak> StagedSimulation::breaks() const {
-  std::vector<BondBreak> here = present_.breaks(), all;
-  const std::vector<std::size_t> numbers_of_bonds = bonds_between(numbers(), bonds_).numbers;
-  for (BondBreak& event : here) event.bond = numbers_of_bonds[event.bond];
-  std::ranges::merge(past_breaks_, here, std::back_inserter(all), {}, &BondBreak::step, &BondBreak::step);
-  return all;
-}
-
 StagedSimulation::HoldingBonds StagedSimulation::holding_bonds() const {
-  const SceneBonds between = bonds_between(numbers(), bonds_);
-  std::vector<char> broken(between.bonds.size(), 0);
+  const std::vector<Grain> bodies = present_.grains();
+  std::vector<char> broken(bonds_.all.size(), 0);
   for (const BondBreak& event : present_.breaks()) broken[event.bond] = 1;
   HoldingBonds holding;
   for (std::size_t b = 0; b < broken.size(); ++b) {
-    if (broken[b] != 0) continue;
-    holding.bonds.push_back(between.bonds[b]);
+    const GrainBond& bond = bonds_.all[b];
+    if (broken[b] != 0 || !bodies[bond.i].present || !bodies[bond.j].present) continue;
+    holding.bonds.push_back(bond);
     if (!bonds_.strengths) continue;
-    holding.strengths.tension.push_back(bonds_.strengths->tension[between.numbers[b]]);
-    holding.strengths.shear.push_back(bonds_.strengths->shear[between.numbers[b]]);
+    holding.strengths.tension.push_back(bonds_.strengths->tension[b]);
+    holding.strengths.shear.push_back(bonds_.strengths->shear[b]);
   }
   return holding;
-}
-
-std::vector<DiscMotion> StagedSimulation::of_run(const std::vector<DiscMotion>& here) const {
-  std::vector<DiscMotion> all(first_added(stages_.size()), not_there);
-  for (std::size_t k = 0; k < here.size(); ++k) all[numbers()[k]] = here[k];
-  return all;
-}
-
-std::vector<BodyContact> StagedSimulation::body_contacts() const {
-  std::vector<BodyContact> contacts = present_.body_contacts();
-  const auto number = [&](std::int32_t place) { return static_cast<std::int32_t>(numbers()[place]); };
-  for (BodyContact& contact : contacts) {
-    contact.i = number(contact.i);
-    if (contact.j >= 0) contact.j = number(contact.j);
-  }
-  return contacts;
 }
 
 std::int64_t StagedSimulation::milestone() const {
@@ -219,11 +174,12 @@ EnergyLedger StagedSimulation::energy() const {
 
 // How a stage begins.
 
-StagedSimulation::Start StagedSimulation::start_of_first() const {
-  const GrainScene& scene = stages_.front().scene;
-  Start start{.walls = {}, .bodies = {std::vector<std::size_t>(scene.grains.size()), scene.grains}, .cell = scene.cell};
-  std::iota(start.bodies.numbers.begin(), start.bodies.numbers.end(), std::size_t{0});
-  return start;
+/// All bodies of the run, those present that are in the first scene.
+std::vector<Grain> StagedSimulation::bodies_at_start() const {
+  std::vector<Grain> bodies = stages_.front().scene.grains;
+  for (const GrainStage& stage : stages_)
+    for (const Grain& grain : stage.bodies.added) bodies.emplace_back(grain).present = false;
+  return bodies;
 }
 
 StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
@@ -231,59 +187,34 @@ StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
   Bonds bonds{scene.bonds, scene.strengths, {}};
   for (GrainBond& bond : bonds.all)
     if (!bond.rest) bond.rest = rest_of(scene, bond.i, bond.j);
-  return bonds_of(0, std::move(bonds), start_of_first(), {}, {});
+  return bonds_of(0, std::move(bonds), scene.grains, scene.cell, {});
 }
 
-StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, const Start& start,
-                                                   std::span<const GrainContact> contacts,
-                                                   std::span<const std::int32_t> origins) const {
+StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, const std::vector<Grain>& bodies,
+                                                   const std::optional<PeriodicCell>& cell,
+                                                   std::span<const GrainContact> contacts) const {
   if (!stages_[stage].bonds) return bonds;
-  const PresentBodies& bodies = start.bodies;
   const StageBonds& how = *stages_[stage].bonds;
   GrainScene scene;
-  scene.grains = bodies.grains;
-  scene.cell = start.cell;
-  scene.bonds = make_bonds(scene, contacts, origins, bonds_between(bodies.numbers, bonds).bonds, how);
+  scene.grains = bodies;
+  scene.cell = cell;
+  scene.bonds = bonds.all;
+  scene.bonds = make_bonds(scene, contacts, how);
   if (how.strengths) {
     const ContactStrengths made = bond_strengths(scene, *how.strengths);
     if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
     bonds.strengths->tension.insert(bonds.strengths->tension.end(), made.tension.begin(), made.tension.end());
     bonds.strengths->shear.insert(bonds.strengths->shear.end(), made.shear.begin(), made.shear.end());
   }
-  for (GrainBond& bond : scene.bonds) bond.i = bodies.numbers[bond.i], bond.j = bodies.numbers[bond.j];
   bonds.all.insert(bonds.all.end(), scene.bonds.begin(), scene.bonds.end());
   bonds.stages.insert(bonds.stages.end(), scene.bonds.size(), stage);
   return bonds;
-}
-
-StagedSimulation::SceneBonds StagedSimulation::bonds_between(const std::vector<std::size_t>& bodies,
-                                                             const Bonds& bonds) {
-  SceneBonds found;
-  const auto place = [&](std::size_t number) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(bodies, number) - bodies.begin());
-  };
-  for (std::size_t b = 0; b < bonds.all.size(); ++b) {
-    GrainBond bond = bonds.all[b];
-    const std::size_t i = place(bond.i), j = place(bond.j);
-    if (i == bodies.size() || j == bodies.size() || bodies[i] != bond.i || bodies[j] != bond.j) continue;
-    bond.i = i, bond.j = j;
-    found.numbers.push_back(b);
-    found.bonds.push_back(bond);
-  }
-  return found;
 }
 
 std::size_t StagedSimulation::first_added(std::size_t stage) const {
   std::size_t number = stages_.front().scene.grains.size();
   for (std::size_t k = 0; k < stage; ++k) number += stages_[k].bodies.added.size();
   return number;
-}
-
-const Grain& StagedSimulation::body_of_run(std::size_t number) const {
-  if (number < stages_.front().scene.grains.size()) return stages_.front().scene.grains[number];
-  std::size_t stage = 0;
-  while (number >= first_added(stage + 1)) ++stage;
-  return stages_[stage].bodies.added[number - first_added(stage)];
 }
 
 /// The stage that gave the servo of a wall its schedule.
@@ -304,22 +235,14 @@ std::size_t StagedSimulation::stage_of_stress(std::size_t stage, bool CellServo:
 
 /// The scene of a stage.
 /// \param reports of the stages up to this one, of which their first steps are read
-GrainScene StagedSimulation::scene_of(std::span<const StageReport> reports, const Start& start,
-                                      const Bonds& bonds) const {
+GrainScene StagedSimulation::scene_of(std::span<const StageReport> reports, std::vector<Grain> bodies,
+                                      const Start& start, const Bonds& bonds) const {
   const std::size_t stage = reports.size() - 1;
   const auto time_of = [&](std::size_t k) { return static_cast<double>(reports[k].first) * options_.time_step; };
   GrainScene scene = stages_[stage].scene;
-  scene.grains = start.bodies.grains;
-  const SceneBonds between = bonds_between(start.bodies.numbers, bonds);
-  scene.bonds = between.bonds;
-  scene.strengths.reset();
-  if (bonds.strengths) {
-    scene.strengths.emplace().friction = bonds.strengths->friction;
-    for (const std::size_t bond : between.numbers) {
-      scene.strengths->tension.push_back(bonds.strengths->tension[bond]);
-      scene.strengths->shear.push_back(bonds.strengths->shear[bond]);
-    }
-  }
+  scene.grains = std::move(bodies);
+  scene.bonds = bonds.all;
+  scene.strengths = bonds.strengths;
   const double time = time_of(stage);
   for (std::size_t w = 0; stage > 0 && w < start.walls.size(); ++w) {
     Wall& wall = scene.walls[w];
@@ -331,8 +254,6 @@ GrainScene StagedSimulation::scene_of(std::span<const StageReport> reports, cons
   }
   if (!scene.cell) return scene;
   PeriodicCell& cell = *scene.cell;
-  cell.corner = start.cell->corner;
-  cell.width = start.cell->width, cell.height = start.cell->height, cell.shift = start.cell->shift;
   for (Schedule* rate : {&cell.rate_xx, &cell.rate_yy, &cell.rate_xy}) *rate = delayed(*rate, time);
   if (cell.servo)
     for (const auto& [stress, goes_on] : {std::pair{&cell.servo->stress_xx, &CellServo::goes_on_xx},
@@ -341,30 +262,16 @@ GrainScene StagedSimulation::scene_of(std::span<const StageReport> reports, cons
   return scene;
 }
 
-/// Breaks of bonds that have gone before, or go where a stage begins.
-/// \param left places of the bonds of the next scene among those of the present one
-std::vector<BondBreak> StagedSimulation::breaks_of_others(const std::vector<std::int32_t>& left) const {
-  std::vector<BondBreak> all = past_breaks_;
-  const std::vector<std::size_t> numbers_of_bonds = bonds_between(numbers(), bonds_).numbers;
-  for (BondBreak event : present_.breaks()) {
-    if (std::ranges::find(left, static_cast<std::int32_t>(event.bond)) != left.end()) continue;
-    event.bond = numbers_of_bonds[event.bond];
-    all.push_back(event);
-  }
-  std::ranges::stable_sort(all, {}, &BondBreak::step);
-  return all;
-}
-
 void StagedSimulation::begin_stage() {
   const EnergyLedger before = energy();
   const std::size_t next = number() + 1;
   const GrainStage& stage = stages_[next];
-  Start start{.walls = {}, .bodies = {}, .cell = present_.placed_cell()};
+  Start start;
   if (const auto cell = present_.cell()) start.strain = cell->strain;
-  SceneOrigins origins{.bodies = {}, .bonds = {}, .walls = wall_origins(stage, stages_[number()])};
+  const std::vector<std::int32_t> origins = wall_origins(stage, stages_[number()]);
   const std::vector<WallState> standing = present_.walls();
-  for (std::size_t w = 0; w < origins.walls.size(); ++w)
-    start.walls.push_back(origins.walls[w] < 0 ? stage.scene.walls[w].point : standing[origins.walls[w]].place);
+  for (std::size_t w = 0; w < origins.size(); ++w)
+    start.walls.push_back(origins[w] < 0 ? stage.scene.walls[w].point : standing[origins[w]].place);
   std::vector<StageReport> reports = reports_;
   StageReport& report = reports.emplace_back();
   report.name = stage.name;
@@ -373,14 +280,10 @@ void StagedSimulation::begin_stage() {
   report.added = stage.bodies.added.size();
   Bonds bonds;
   try {
-    start.bodies =
-        change_bodies({numbers(), present_.grains()}, stage.bodies, first_added(next), origins.bodies, report);
-    bonds = bonds_of(next, bonds_, start, present_.contacts(), origins.bodies);
-    origins.bonds =
-        bond_origins(bonds_between(numbers(), bonds_).numbers, bonds_between(start.bodies.numbers, bonds).numbers);
-    std::vector<BondBreak> past = breaks_of_others(origins.bonds);
-    present_.change(scene_of(reports, start, bonds), origins);
-    past_breaks_ = std::move(past);
+    std::vector<Grain> bodies = present_.grains();
+    change_bodies(bodies, stage.bodies, first_added(next), report);
+    bonds = bonds_of(next, bonds_, bodies, present_.placed_cell(), present_.contacts());
+    present_.change(scene_of(reports, std::move(bodies), start, bonds), origins);
   } catch (const Error& error) {
     throw error.at(stage.where());
   }
@@ -432,27 +335,10 @@ struct IdleChoice {
 };
 constexpr auto idle_numbers = [](auto& s, const auto& visit) { visit(s.stage), visit(s.renames), visit(s.choice); };
 
-/// A body where the present stage began.
-struct SavedBody {
-  std::size_t number = 0;
-  Grain grain = {};
+constexpr auto body_numbers = [](auto& grain, const auto& visit) { visit(grain.present), visit(grain.kind); };
+constexpr auto strain_numbers = [](auto& strain, const auto& visit) {
+  visit(strain.xx), visit(strain.yy), visit(strain.xy);
 };
-constexpr auto body_numbers = [](auto& s, const auto& visit) {
-  auto& g = s.grain;
-  visit(s.number), visit(g.kind), visit(g.position.x), visit(g.position.y), visit(g.angle), visit(g.velocity.x);
-  visit(g.velocity.y), visit(g.spin);
-};
-
-/// The cell where the present stage began.
-struct SavedCell {
-  PeriodicCell cell = {};
-  Voigt strain = {};
-};
-constexpr auto stage_cell_numbers = [](auto& s, const auto& visit) {
-  visit(s.cell.width), visit(s.cell.height), visit(s.cell.shift), vector_numbers(s.cell.corner, visit);
-  visit(s.strain.xx), visit(s.strain.yy), visit(s.strain.xy);
-};
-
 constexpr auto energy_numbers = [](auto& e, const auto& visit) {
   visit(e.initial), visit(e.potential), visit(e.changes);
 };
@@ -533,17 +419,15 @@ SavedState StagedSimulation::save() const {
   std::vector<IdleChoice> idle;
   for (std::size_t k = 0; k < reports_.size(); ++k) {
     const StageReport& report = reports_[k];
-    stages.push_back({report, bits_of(report.effects, present_.effects())});
+    stages.push_back({report, bits_of(report.effects, effects_)});
     for (const ServoReport& servo : report.servos) servos.push_back({k, false, false, servo});
     for (const CellServoReport& servo : report.cell_servos)
       servos.push_back({k, true, servo.component == "yy", ServoReport{servo}});
     for (const std::size_t choice : report.idle_removals) idle.push_back({k, false, choice});
     for (const std::size_t choice : report.idle_renamings) idle.push_back({k, true, choice});
   }
-  std::vector<SavedCell> cell;
-  if (start_.cell) cell.push_back({*start_.cell, start_.strain});
-  std::vector<SavedBody> bodies;
-  for (std::size_t k = 0; k < numbers().size(); ++k) bodies.push_back({numbers()[k], start_.bodies.grains[k]});
+  std::vector<Grain> bodies = present_.grains();
+  bodies.resize(first_added(reports_.size()));  // those of later stages may still change
   std::vector<MadeBond> made;
   const std::size_t first = bonds_.all.size() - bonds_.stages.size();
   for (std::size_t k = 0; k < bonds_.stages.size(); ++k) {
@@ -554,11 +438,9 @@ SavedState StagedSimulation::save() const {
   }
   for (SavedArray& array : std::array{saved_rows("stages", std::move(stages), stage_numbers),
                                       saved_rows("stage_walls", start_.walls, vector_numbers),
-                                      saved_rows("stage_cell", std::move(cell), stage_cell_numbers),
+                                      saved_rows("stage_strain", std::vector{start_.strain}, strain_numbers),
                                       saved_rows("stage_bodies", std::move(bodies), body_numbers),
-                                      saved_rows("stage_order", present_.order(), one_number),
                                       saved_rows("stage_bonds", std::move(made), bond_numbers),
-                                      saved_rows("stage_breaks", past_breaks_, break_numbers),
                                       saved_rows("stage_servos", std::move(servos), servo_report_numbers),
                                       saved_rows("stage_idle", std::move(idle), idle_numbers),
                                       saved_rows("stage_energies", std::vector{energies_}, energy_numbers)})
@@ -591,31 +473,22 @@ StagedSimulation::Bonds StagedSimulation::bonds_in(const SavedState& state, std:
   return bonds;
 }
 
-StagedSimulation::Start StagedSimulation::start_in(const SavedState& state, std::size_t begun) const {
+std::vector<Grain> StagedSimulation::bodies_in(const SavedState& state, std::size_t begun) const {
   const GrainStage& stage = stages_[begun - 1];
-  Start start{.walls = rows_in<Vec2>(state, "stage_walls", vector_numbers), .bodies = {}, .cell = stage.scene.cell};
-  PresentBodies& bodies = start.bodies;
-  for (const auto& [number, saved] : rows_in<SavedBody>(state, "stage_bodies", body_numbers)) {
-    const bool ascends = bodies.numbers.empty() || number > bodies.numbers.back();
-    if (!ascends || number >= first_added(begun) || saved.kind < 0 || saved.kind >= stage.scene.kinds)
-      refuse_state(fmt::format("the saved state has a body {} of kind {}", number, saved.kind),
-                   fmt::format("until the stage '{}' this run has {} of {}", stage.name, first_added(begun),
-                               counted(stage.scene.kinds, "kind")));
-    bodies.numbers.push_back(number);
-    Grain& grain = bodies.grains.emplace_back(body_of_run(number));
-    grain.kind = saved.kind;
-    grain.position = saved.position, grain.angle = saved.angle;
-    grain.velocity = saved.velocity, grain.spin = saved.spin;
+  const auto saved = rows_in<Grain>(state, "stage_bodies", body_numbers);
+  if (saved.size() != first_added(begun) || std::ranges::none_of(saved, &Grain::present))
+    refuse_state(
+        fmt::format("the saved state has {}", counted(std::ssize(saved), "body", "bodies")),
+        fmt::format("until the stage '{}' this run has {}, and one must be there", stage.name, first_added(begun)));
+  std::vector<Grain> bodies = bodies_at_start();
+  for (std::size_t k = 0; k < saved.size(); ++k) {
+    const int kind = saved[k].kind;
+    if (saved[k].present && (kind < 0 || kind >= stage.scene.kinds))
+      refuse_state(fmt::format("the saved state has a body of kind {}", kind),
+                   fmt::format("the stage '{}' has {}", stage.name, counted(stage.scene.kinds, "kind")));
+    bodies[k].present = saved[k].present, bodies[k].kind = kind;
   }
-  const auto cell = rows_in<SavedCell>(state, "stage_cell", stage_cell_numbers);
-  if (cell.size() != (start.cell ? 1 : 0))
-    refuse_state("the saved state is of another periodic cell", "its parts do not belong together");
-  if (!start.cell) return start;
-  const PeriodicCell& then = cell[0].cell;
-  start.cell->width = then.width, start.cell->height = then.height, start.cell->shift = then.shift;
-  start.cell->corner = then.corner;
-  start.strain = cell[0].strain;
-  return start;
+  return bodies;
 }
 
 std::size_t StagedSimulation::stages_begun(const SavedState& state) {
@@ -626,41 +499,29 @@ std::size_t StagedSimulation::stages_begun(const SavedState& state) {
 void StagedSimulation::restore(const SavedState& state) {
   std::vector<SavedStage> stages = rows_in<SavedStage>(state, "stages", stage_numbers);
   const auto sums = rows_in<Energies>(state, "stage_energies", energy_numbers);
+  const auto strains = rows_in<Voigt>(state, "stage_strain", strain_numbers);
   const std::size_t begun = stages.size();
-  if (begun < 1 || begun > stages_.size() || sums.size() != 1 ||
+  if (begun < 1 || begun > stages_.size() || sums.size() != 1 || strains.size() != 1 ||
       state["stage_walls"].size() != 2 * stages_[begun - 1].scene.walls.size())
     refuse_state(fmt::format("the saved state has begun {}", counted(static_cast<std::int64_t>(begun), "stage")),
                  fmt::format("this run has {} with other walls", stages_.size()));
-  const Bonds bonds = bonds_in(state, begun);
-  std::vector<BondBreak> past = rows_in<BondBreak>(state, "stage_breaks", break_numbers);
-  if (std::ranges::any_of(past, [&](const BondBreak& event) { return event.bond >= bonds.all.size(); }))
-    refuse_state("the saved state has breaks of bonds that are not there", "its file may be damaged");
-  Start start = start_in(state, begun);
-  const auto order = rows_in<std::size_t>(state, "stage_order", one_number);
-  std::vector<std::size_t> places = order;
-  std::ranges::sort(places);
-  for (std::size_t k = 0; k < std::max(places.size(), start.bodies.numbers.size()); ++k)
-    if (places.size() != start.bodies.numbers.size() || places[k] != k)
-      refuse_state("the saved state has bodies in no order", "its parts do not belong together");
+  Bonds bonds = bonds_in(state, begun);
+  const Start start{.walls = rows_in<Vec2>(state, "stage_walls", vector_numbers), .strain = strains[0]};
   std::vector<StageReport> reports;
-  for (SavedStage& stage : stages) reports.push_back(std::move(stage.report));
-  GrainSimulation simulation(scene_of(reports, start, bonds), options_, order);
-  simulation.restore(state);
   for (std::size_t k = 0; k < begun; ++k) {
-    StageReport& report = reports[k];
+    StageReport& report = reports.emplace_back(std::move(stages[k].report));
     report.name = stages_[k].name;
-    report.effects = effects_of_bits(simulation.effects(), stages[k].effects);
+    report.effects = effects_of_bits(effects_, stages[k].effects);
     report.added = stages_[k].bodies.added.size();
     report.bonds_made = static_cast<std::size_t>(std::ranges::count(bonds.stages, k));
     report.renamed_walls = stages_[k].renamed_walls;
   }
   take_servos(state, stages_, reports);
   take_idle(state, stages_, reports);
-  past_breaks_ = std::move(past);
-  present_ = std::move(simulation);
+  present_.restore(scene_of(reports, bodies_in(state, begun), start, bonds), state);
   reports_ = std::move(reports);
-  start_ = std::move(start);
-  bonds_ = bonds;
+  start_ = start;
+  bonds_ = std::move(bonds);
   energies_ = sums[0];
   // a length or limit that was raised after the stage had reached it
   StageReport& last = reports_.back();
