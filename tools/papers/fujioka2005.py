@@ -97,7 +97,7 @@ def costs(test):
     """Curves of error against time of computing."""
     rows = [row for row in rows_of("fujioka2005/costs", "test", "label") if row.test == test]
     own = {label: [row for row in rows if row.label == label] for label in dict.fromkeys(row.label for row in rows)}
-    return [Row(label=label, letter=label[0], a=points[0].a, points=points) for label, points in own.items()]
+    return [Row(test=test, label=label, letter=label[0], a=points[0].a, points=points) for label, points in own.items()]
 
 
 # ---- Figs. 4 to 7: one ball on a floor
@@ -321,7 +321,7 @@ def numbers_of(row):
     """What result.json has of a row: without curves, the points as columns."""
     points = row.get("points", [{}])
     return {**{key: row[key] for key in row if key not in ("points", "paths", "times", "energies", "changes")},
-            **{key: [point[key] for point in points] for key in points[0] if key != "a"}}
+            **{key: [point[key] for point in points] for key in points[0] if key not in row}}
 
 
 def reproduce(options, _page):
