@@ -14,6 +14,7 @@
 #include "equidem/assembly/sites.hpp"
 #include "equidem/assembly/strips.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -200,6 +201,7 @@ void add_sides(const Assembly& assembly, const TurnedRectangle& domain, std::vec
 }
 
 PowerCells free_cells(const Assembly& assembly, const TurnedRectangle& domain) {
+  stop_if_interrupted();
   check_inside(assembly, domain);
   const Sites sites(assembly);
   Strips strips(sites);

@@ -7,6 +7,7 @@
 
 #include "equidem/assembly/sites.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/geometry/neighbours.hpp"
 
@@ -34,6 +35,7 @@ void check_periods(Vec2 period, double diameter) {
 }  // namespace
 
 std::vector<Contact> touching_discs(const Assembly& assembly, double gap_tolerance) {
+  stop_if_interrupted();
   const double share = std::max(gap_tolerance, rounding_gap);
   if (assembly.period)
     check_periods(*assembly.period, 2 * (1 + share) * *std::max_element(assembly.radii.begin(), assembly.radii.end()));
