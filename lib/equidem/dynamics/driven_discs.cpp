@@ -49,17 +49,24 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
   const auto disc_of = [&](std::int32_t disc) -> Disc& {
     Disc& driven = discs[layout.place_of[disc]];
     driven.place = layout.place_of[disc];
-    driven.centre = scene.assembly.centres[disc];
-    driven.radius = scene.assembly.radii[disc];
     const Inertia& inertia = scene.inertia[disc];
     driven.inertia[0] = driven.inertia[1] = inertia.mass;
     driven.inertia[2] = inertia.moment;
     for (int c = 0; c < 3; ++c) driven.inverse_inertia[c] = 1 / driven.inertia[c];
     return driven;
   };
+  DegreesOfFreedom components;
+  components.per_disc = unknowns_;
   std::vector<std::vector<DiscLoad>> loads(scene.assembly.size());
-  add_loads(scene, loads);
-  for (const TimedLoad& load : scene.loads) schedules_.push_back(load.factor);
+  for (const auto& [load, factor] : scene.loads) {
+    const std::vector<double> forces = assemble_loads(scene.assembly, components, {load});
+    const std::int32_t schedule = add(factor);
+    for (const std::int32_t disc : group(scene.assembly, load.group).discs) {
+      DiscLoad& on_disc = loads[disc].emplace_back();
+      on_disc.schedule = schedule;
+      for (int c = 0; c < unknowns_; ++c) on_disc.force[c] = forces[static_cast<std::size_t>(disc) * unknowns_ + c];
+    }
+  }
   for (std::size_t disc = 0; disc < loads.size(); ++disc) {
     if (loads[disc].empty()) continue;
     Disc& driven = disc_of(static_cast<std::int32_t>(disc));
@@ -94,7 +101,11 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
       strip_first_[++strip] = static_cast<std::int32_t>(discs_.size());
     }
     discs_.push_back(disc);
-    places_.push_back({disc.centre, disc.radius, place, disc.loads > 0 || disc.any_held()});
+    const std::int32_t number = layout.disc_at[place];
+    places_.push_back({.centre = scene.assembly.centres[number],
+                       .radius = scene.assembly.radii[number],
+                       .place = place,
+                       .always = disc.loads > 0 || disc.any_held()});
   }
   acting_.resize(strips);
   while (strip < strips) strip_first_[++strip] = static_cast<std::int32_t>(discs_.size());
@@ -106,21 +117,6 @@ std::int32_t DrivenDiscs::add(const std::optional<Schedule>& schedule) {
   check(*schedule);
   schedules_.push_back(*schedule);
   return static_cast<std::int32_t>(schedules_.size()) - 1;
-}
-
-void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const {
-  DegreesOfFreedom components;
-  components.per_disc = unknowns_;
-  for (std::size_t k = 0; k < scene.loads.size(); ++k) {
-    check(scene.loads[k].factor);
-    const Load& load = scene.loads[k].load;
-    const std::vector<double> forces = assemble_loads(scene.assembly, components, {load});
-    for (const std::int32_t disc : group(scene.assembly, load.group).discs) {
-      DiscLoad& on_disc = loads[disc].emplace_back();
-      on_disc.schedule = static_cast<std::int32_t>(k);
-      for (int c = 0; c < unknowns_; ++c) on_disc.force[c] = forces[static_cast<std::size_t>(disc) * unknowns_ + c];
-    }
-  }
 }
 
 std::span<const DrivenDiscs::WallMotion> DrivenDiscs::move_walls(std::int32_t strip, double time, double time_after) {
@@ -140,7 +136,7 @@ bool DrivenDiscs::touches_wall(const Place& disc, Vec2 u, std::span<const WallMo
   return false;
 }
 
-DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, std::span<const WallMotion> motions) const {
+DrivenDiscs::Push DrivenDiscs::push_of_walls(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const {
   Push push;
   for (std::size_t k = 0; k < walls_.size(); ++k) {
     const Wall& wall = walls_[k];
@@ -192,7 +188,7 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
       const double factor = factors.of(loads_[l].schedule);
       for (int c = 0; c < 3; ++c) load[c] += loads_[l].force[c] * factor;
     }
-    const Push push = push_of_walls(disc, {u[0], u[1]}, walls);
+    const Push push = push_of_walls(places_[k], {u[0], u[1]}, walls);
     wall[0] = push.force.x;
     wall[1] = push.force.y;
     work.walls += push.work;

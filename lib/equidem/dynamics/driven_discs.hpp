@@ -55,8 +55,6 @@ class DrivenDiscs {
   struct Disc {
     std::int32_t place = 0;
     double inertia[3] = {0, 0, 0}, inverse_inertia[3] = {0, 0, 0};
-    Vec2 centre;
-    double radius = 0;
     std::int32_t held[3] = {-1, -1, -1};  // schedule of each component
     std::int32_t first_load = 0, loads = 0;
     double before[3] = {0, 0, 0};  // velocities
@@ -74,7 +72,6 @@ class DrivenDiscs {
     std::int32_t schedule = -1;
   };
   std::int32_t add(const std::optional<Schedule>& schedule);
-  void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
   /// Displacement of a wall, and the displacement over which it does work, m.
   struct WallMotion {
     double moved = 0, way = 0;
@@ -88,7 +85,7 @@ class DrivenDiscs {
     double work = 0;
   };
   [[nodiscard]] bool touches_wall(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const;
-  [[nodiscard]] Push push_of_walls(const Disc& disc, Vec2 u, std::span<const WallMotion> motions) const;
+  [[nodiscard]] Push push_of_walls(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const;
 
   int unknowns_ = 2, width_ = 2;
   bool local_ = false;
