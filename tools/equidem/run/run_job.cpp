@@ -61,6 +61,7 @@ Results energies_of(const RunJob& job, BodyFamily family, Body body, const Energ
       .add("energy/kinetic", "kinetic", l.kinetic)
       .add("energy/elastic", "elastic", l.elastic())
       .add("energy/potential", "potential", l.potential, energy_unit(body));
+  if (l.cohesion != 0) out.add("energy/cohesion", "cohesion", l.cohesion);
   out.line("").add("energy/initial", "at the start", l.initial);
   const double overlap = record.energies.empty() ? 0 : record.energies.front().ledger.elastic();
   if (overlap > 1e-6 * l.largest()) out.add("", "", overlap, "of it elastic");

@@ -19,6 +19,7 @@ struct RollingLanes {
   Lanes dashpot;   ///< times dt, kg
   Lanes mobility;  ///< mean velocity per impulse, 1/kg
   Lanes velocity;  ///< of rolling, as that of resist()
+  Lanes lost;      ///< found by roll(), J
 };
 
 /// What rolling carries from step to step.
@@ -31,7 +32,7 @@ struct RollingMemory {
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE RollingLanes<Lanes> rolling_lanes(const ContactEffects& of, const Lanes& velocity, double dt) {
   return {spring_lanes(load<Lanes>(of.friction), load<Lanes>(of.stiffness), dt), load<Lanes>(of.dashpot),
-          load<Lanes>(of.half_mobility), velocity};
+          load<Lanes>(of.half_mobility), velocity, Lanes{}};
 }
 
 template <class Lanes>
@@ -46,13 +47,15 @@ EQUIDEM_ALWAYS_INLINE void store(const RollingMemory<Lanes>& memory, ContactEffe
   store(memory.stretch, of.stretch);
 }
 
-/// \param repulsion impulse, >= 0
+/// \param repulsion impulse
+/// \return what springs of ended contacts held, J
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> roll(const RollingLanes<Lanes>& of, const Lanes& repulsion,
-                                               const ContactChanges<Lanes>& at, double dt,
-                                               RollingMemory<Lanes>& memory) {
-  return resist<kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility, of.spring.friction * repulsion, at,
-                      dt, memory.impulse, memory.stretch);
+EQUIDEM_ALWAYS_INLINE Lanes roll(RollingLanes<Lanes>& of, const Lanes& repulsion, const ContactChanges<Lanes>& at,
+                                 double dt, RollingMemory<Lanes>& memory) {
+  const SpringLosses<Lanes> losses = resist<kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility,
+                                                  repulsion, at, dt, memory.impulse, memory.stretch);
+  of.lost = losses.slip + losses.dashpot;
+  return losses.released;
 }
 
 template <class Lanes>

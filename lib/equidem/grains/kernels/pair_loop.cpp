@@ -45,9 +45,10 @@ struct DiscGeometry {
 /// Results of the contacts of a group.
 template <class Lanes>
 struct Outcome {
-  Lanes px, py, torque, rim;  ///< impulse on j
+  Lanes px, py, rim;  ///< impulse on j
   ContactLosses<Lanes> losses;
   bool any, changes;
+  Lanes torque, lost_rolling;  ///< with rolling
 };
 
 template <ResponseKind kind, class Lanes>
@@ -188,6 +189,7 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
   }
   if constexpr (kind.rolling) {
     store(memory.rolling, *effects);
+    outcome.lost_rolling = effect_lanes.rolling.lost;
     outcome.torque = load<Lanes>(effects->lever) * memory.rolling.impulse;
   }
   if (numbers.record) {
@@ -203,7 +205,7 @@ template <ResponseKind kind, bool outward, class Lanes>
 EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
                                 BodyImpulse*& next, LaneSums<Lanes>& sums) {
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
-  add_losses<kind>(outcome.losses, outcome.changes, sums);
+  add_losses<kind>(outcome.losses, outcome.lost_rolling, outcome.changes, sums);
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
   // the tangential impulse turns both bodies the same way round, and its lever is the radius

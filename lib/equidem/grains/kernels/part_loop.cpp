@@ -289,7 +289,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
   const ContactLosses<Lanes> losses =
       respond<Law, kind.response>(law_of<kind>(numbers, group), dt * column<Lanes>(group, PartGroup::dashpot),
                                   slip_dashpot, motion, at, dt, effect_lanes, memory);
-  add_losses<kind.response>(losses, at.any, sums);
+  add_losses<kind.response>(losses, effect_lanes.rolling.lost, at.any, sums);
   const Vectors<Lanes> n = found.normal, t = perpendicular(n);
   Vectors<Lanes> push = memory.impulse * n;
   Lanes torque_i = memory.impulse * levers.across_i, torque_j = memory.impulse * levers.across_j;

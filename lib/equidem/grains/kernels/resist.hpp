@@ -117,13 +117,14 @@ struct SpringLosses {
 /// \param velocity of j relative to i, with half of the change by this contact in the last step (Euler)
 /// \param mean_velocity Verlet: over the drift
 /// \param mobility Euler: mean velocity per impulse, 1/kg
+/// \param repulsion impulse that the limit is measured by
 /// \param[in,out] impulse on j
 /// \param[in,out] stretch of the spring, m
 template <ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, const Lanes& dashpot, Lanes velocity,
-                                                 const Lanes& mean_velocity, const Lanes& mobility, const Lanes& yield,
-                                                 const ContactChanges<Lanes>& at, double dt, Lanes& impulse,
-                                                 Lanes& stretch) {
+                                                 const Lanes& mean_velocity, const Lanes& mobility,
+                                                 const Lanes& repulsion, const ContactChanges<Lanes>& at, double dt,
+                                                 Lanes& impulse, Lanes& stretch) {
   const Bits<Lanes>& touch = at.touch;
   Lanes stretched = stretch;
   if constexpr (kind.verlet) {
@@ -132,6 +133,7 @@ EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, 
   } else {
     velocity -= mobility * impulse;  // without this contact's own part in it
   }
+  const Lanes yield = law.friction * larger(repulsion, Lanes{});
   Tangent<Lanes> tangent =
       slide<kind.verlet, kind.equal>(law, dashpot, stretched, velocity, mean_velocity, mobility, impulse, yield, dt);
   if constexpr (!kind.bounded) {

@@ -106,19 +106,18 @@ struct ContactMemory {
 
 template <class Lanes>
 struct ContactLosses {
-  Lanes normal, slip, dashpot, rolling, released;  ///< J; the last is what the springs of ended contacts held
+  Lanes normal, slip, dashpot, released;  ///< J; the last is what the springs of ended contacts held
 };
 
 /// \param dashpot normal, times dt, kg; hertz: kg/m^(1/4)
 /// \param slip_dashpot tangential, times dt, kg
-/// \param effects read where the kind has some
+/// \param[in,out] effects used where the kind has some
 /// \param[in,out] memory of the contacts
 template <class Law, ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, const Lanes& dashpot,
                                                    const Lanes& slip_dashpot, const ContactMotion<Lanes>& motion,
                                                    const ContactChanges<Lanes>& near, double dt,
-                                                   const EffectLanes<Lanes>& effects, ContactMemory<Lanes>& memory) {
-  const Lanes zero{};
+                                                   EffectLanes<Lanes>& effects, ContactMemory<Lanes>& memory) {
   ContactLosses<Lanes> losses{};
   ContactChanges<Lanes> at = near;
   Lanes before = memory.impulse;  // of spring and dashpot
@@ -146,33 +145,29 @@ EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, c
   }
   memory.impulse = sum;
   if constexpr (kind.friction) {
-    const Lanes carried = larger(impulse, zero);
-    const SpringLosses<Lanes> slip =
-        resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility,
-                     law.slip.friction * carried, at, dt, memory.tangential, memory.stretch);
+    const SpringLosses<Lanes> slip = resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip,
+                                                  motion.mobility, impulse, at, dt, memory.tangential, memory.stretch);
     losses.slip = slip.slip;
     losses.dashpot = slip.dashpot;
     losses.released = slip.released;
-    if constexpr (kind.rolling) {
-      const SpringLosses<Lanes> rolling = roll<kind>(effects.rolling, carried, at, dt, memory.rolling);
-      losses.rolling = rolling.slip + rolling.dashpot;
-      losses.released += rolling.released;
-    }
+    if constexpr (kind.rolling) losses.released += roll<kind>(effects.rolling, impulse, at, dt, memory.rolling);
     if constexpr (kind.cohesion) losses.released += lost_at_range<kind>(effects.cohesion, motion, near, dt);
   } else {
-    memory.tangential = zero;  // the friction of an earlier stage may have left one
+    memory.tangential = Lanes{};  // the friction of an earlier stage may have left one
   }
   return losses;
 }
 
 /// Add the losses of eight contacts.
+/// \param rolling where the kind has it
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void add_losses(const ContactLosses<Lanes>& losses, bool changes, LaneSums<Lanes>& sums) {
+EQUIDEM_ALWAYS_INLINE void add_losses(const ContactLosses<Lanes>& losses, const Lanes& rolling, bool changes,
+                                      LaneSums<Lanes>& sums) {
   if constexpr (kind.friction) {
     if (changes || kind.cohesion) [[unlikely]]
       sums.released = add_up(losses.released, sums.released);
     Row<Lanes> row[8];
-    rows_of(losses.normal, losses.slip, losses.dashpot, kind.rolling ? losses.rolling : Lanes{}, row);
+    rows_of(losses.normal, losses.slip, losses.dashpot, kind.rolling ? rolling : Lanes{}, row);
     for (const Row<Lanes>& lost : row) sums.lost += lost;
   } else {
     sums.without_friction = add_up(losses.normal, sums.without_friction);

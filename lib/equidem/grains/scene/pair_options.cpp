@@ -146,22 +146,16 @@ void set_friction(const PairOptions& options, NormalLaw law, double tangential_z
 /// Rolling resistance, and cohesion. \param tangential_zeta as in set_friction
 void set_effects(const PairOptions& options, NormalLaw law, double tangential_zeta, PairProperties& properties) {
   const bool rolling = options.rolling_friction > 0, cohesion = options.cohesion > 0;
-  if (!rolling && (options.rolling_ratio || options.rolling_damping))
-    bad_input_at(options.rolling_ratio ? "rolling_ratio" : "rolling_damping",
-                 "a rolling spring is given without rolling friction", "it would carry nothing",
-                 "Add rolling_friction > 0");
-  if (cohesion != (options.cohesion_range > 0))
-    bad_input_at(cohesion ? "cohesion" : "cohesion_range",
-                 cohesion ? "cohesion is given without its range" : "a range of cohesion is given without a force",
-                 "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0");
+  if (cohesion && options.cohesion_range == 0)
+    bad_input_at("cohesion", "cohesion is given without its range", "bodies attract by a force within a gap",
+                 "Add cohesion_range = ... in m");
   if (!rolling && !cohesion) return;
   if (!gives_force(law))
     bad_input_at(rolling ? "rolling_friction" : "cohesion",
                  fmt::format("{} has no {}", describe(law).name, rolling ? "rolling resistance" : "cohesion"),
                  "that law solves a contact by itself, without other forces of it",
                  "Use " + names_of_laws(LawKind::force));
-  properties.cohesion = options.cohesion;
-  properties.cohesion_range = options.cohesion_range;
+  if (cohesion) properties.cohesion = options.cohesion, properties.cohesion_range = options.cohesion_range;
   if (!rolling) return;
   const double usual = properties.tangential_ratio > 0 ? properties.tangential_ratio : 2.0 / 7;
   properties.rolling_friction = options.rolling_friction;
