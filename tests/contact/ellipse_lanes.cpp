@@ -66,7 +66,7 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
     const PartGroup before = eight.group;
     const auto standing = eight::standing_of<false, eight::Eight>(eight.bodies.data(), eight.group);
     const auto all = ~eight::Bits<eight::Eight>{};
-    const auto found = eight::geometry_of_ellipses(eight.group, standing, all, all, nullptr);
+    const auto found = eight::geometry_of_ellipses<false>(eight.group, standing, all, all, nullptr);
     for (int k = 0; k < 8; ++k, ++count) {
       const auto at = static_cast<std::size_t>(k);
       const TwoEllipses& pair = eight.pairs[at];

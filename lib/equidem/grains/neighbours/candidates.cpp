@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 
 #include "equidem/contact/restitution.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
@@ -24,13 +25,6 @@ auto place(const Wall& wall) {
                     wall.end.y, wall.kind);
 }
 
-bool comes_later(const Grain& grain) {
-  return !grain.present;
-}
-bool comes_later(const Wall& /*wall*/) {
-  return false;
-}
-
 /// Clumps in one place differ by their discs, not by the caller's number of them.
 bool has_lesser_discs(const Grain& a, const Grain& b, const std::vector<Clump>& clumps) {
   if (a.clump < 0 || b.clump < 0) return a.clump < 0 && b.clump >= 0;
@@ -45,9 +39,10 @@ template <class Item, class Tie>
 std::vector<std::size_t> sorted_by_place(const std::vector<Item>& items, const Tie& tie) {
   std::vector<std::size_t> order(items.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const bool later_a = comes_later(items[a]), later_b = comes_later(items[b]);
-    if (later_a || later_b) return later_b && !later_a;
+  auto end = order.end();
+  if constexpr (std::is_same_v<Item, Grain>)  // absent ones follow by their numbers
+    end = std::stable_partition(order.begin(), end, [&](std::size_t k) { return items[k].present; });
+  std::stable_sort(order.begin(), end, [&](std::size_t a, std::size_t b) {
     const auto of_a = place(items[a]), of_b = place(items[b]);
     return of_a == of_b ? tie(items[a], items[b]) : of_a < of_b;
   });

@@ -51,7 +51,7 @@ StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOp
       effects_(effects_of(stages_, options_)),
       bonds_(bonds_at_start()),
       present_(scene_of(std::array{StageReport{}}, bodies_at_start(), start_, bonds_), options_) {
-  energies_.initial = present_.energy().initial;
+  start_.initial = present_.energy().initial;
   reports_.push_back({.name = stages_.front().name,
                       .effects = active_effects(present_.effects()),
                       .bonds_made = bonds_.stages.size()});
@@ -166,9 +166,9 @@ bool StagedSimulation::over() const {
 
 EnergyLedger StagedSimulation::energy() const {
   EnergyLedger ledger = present_.energy();
-  ledger.initial = energies_.initial;
-  ledger.potential += energies_.potential;
-  ledger.work_of_stages = energies_.changes;
+  ledger.initial = start_.initial;
+  ledger.potential += start_.potential;
+  ledger.work_of_stages = start_.changes;
   return ledger;
 }
 
@@ -266,7 +266,7 @@ void StagedSimulation::begin_stage() {
   const EnergyLedger before = energy();
   const std::size_t next = number() + 1;
   const GrainStage& stage = stages_[next];
-  Start start;
+  Start start{.walls = {}, .initial = start_.initial, .potential = before.potential, .changes = start_.changes};
   if (const auto cell = present_.cell()) start.strain = cell->strain;
   const std::vector<std::int32_t> origins = wall_origins(stage, stages_[number()]);
   const std::vector<WallState> standing = present_.walls();
@@ -293,10 +293,9 @@ void StagedSimulation::begin_stage() {
   start_ = std::move(start);
   bonds_ = std::move(bonds);
   const EnergyLedger after = present_.energy();
-  energies_.potential = before.potential;
   const double stored = before.kinetic + before.elastic();
   const double change = after.kinetic + after.elastic() - stored + (after.cohesion - before.cohesion);
-  if (std::abs(change) > energy_rounding * stored) energies_.changes += change;
+  if (std::abs(change) > energy_rounding * stored) start_.changes += change;
 }
 
 // Saved states.
@@ -336,11 +335,10 @@ struct IdleChoice {
 constexpr auto idle_numbers = [](auto& s, const auto& visit) { visit(s.stage), visit(s.renames), visit(s.choice); };
 
 constexpr auto body_numbers = [](auto& grain, const auto& visit) { visit(grain.present), visit(grain.kind); };
-constexpr auto strain_numbers = [](auto& strain, const auto& visit) {
-  visit(strain.xx), visit(strain.yy), visit(strain.xy);
-};
-constexpr auto energy_numbers = [](auto& e, const auto& visit) {
-  visit(e.initial), visit(e.potential), visit(e.changes);
+/// But for the walls.
+constexpr auto stage_start_numbers = [](auto& start, const auto& visit) {
+  visit(start.initial), visit(start.potential), visit(start.changes);
+  visit(start.strain.xx), visit(start.strain.yy), visit(start.strain.xy);
 };
 
 struct MadeBond {
@@ -438,12 +436,11 @@ SavedState StagedSimulation::save() const {
   }
   for (SavedArray& array : std::array{saved_rows("stages", std::move(stages), stage_numbers),
                                       saved_rows("stage_walls", start_.walls, vector_numbers),
-                                      saved_rows("stage_strain", std::vector{start_.strain}, strain_numbers),
+                                      saved_rows("stage_start", std::vector{start_}, stage_start_numbers),
                                       saved_rows("stage_bodies", std::move(bodies), body_numbers),
                                       saved_rows("stage_bonds", std::move(made), bond_numbers),
                                       saved_rows("stage_servos", std::move(servos), servo_report_numbers),
-                                      saved_rows("stage_idle", std::move(idle), idle_numbers),
-                                      saved_rows("stage_energies", std::vector{energies_}, energy_numbers)})
+                                      saved_rows("stage_idle", std::move(idle), idle_numbers)})
     state.arrays.push_back(std::move(array));
   return state;
 }
@@ -498,15 +495,14 @@ std::size_t StagedSimulation::stages_begun(const SavedState& state) {
 
 void StagedSimulation::restore(const SavedState& state) {
   std::vector<SavedStage> stages = rows_in<SavedStage>(state, "stages", stage_numbers);
-  const auto sums = rows_in<Energies>(state, "stage_energies", energy_numbers);
-  const auto strains = rows_in<Voigt>(state, "stage_strain", strain_numbers);
+  auto starts = rows_in<Start>(state, "stage_start", stage_start_numbers);
   const std::size_t begun = stages.size();
-  if (begun < 1 || begun > stages_.size() || sums.size() != 1 || strains.size() != 1 ||
+  if (begun < 1 || begun > stages_.size() || starts.size() != 1 ||
       state["stage_walls"].size() != 2 * stages_[begun - 1].scene.walls.size())
     refuse_state(fmt::format("the saved state has begun {}", counted(static_cast<std::int64_t>(begun), "stage")),
                  fmt::format("this run has {} with other walls", stages_.size()));
   Bonds bonds = bonds_in(state, begun);
-  const Start start{.walls = rows_in<Vec2>(state, "stage_walls", vector_numbers), .strain = strains[0]};
+  starts[0].walls = rows_in<Vec2>(state, "stage_walls", vector_numbers);
   std::vector<StageReport> reports;
   for (std::size_t k = 0; k < begun; ++k) {
     StageReport& report = reports.emplace_back(std::move(stages[k].report));
@@ -518,11 +514,10 @@ void StagedSimulation::restore(const SavedState& state) {
   }
   take_servos(state, stages_, reports);
   take_idle(state, stages_, reports);
-  present_.restore(scene_of(reports, bodies_in(state, begun), start, bonds), state);
+  present_.restore(scene_of(reports, bodies_in(state, begun), starts[0], bonds), state);
   reports_ = std::move(reports);
-  start_ = start;
+  start_ = std::move(starts[0]);
   bonds_ = std::move(bonds);
-  energies_ = sums[0];
   // a length or limit that was raised after the stage had reached it
   StageReport& last = reports_.back();
   if (last.over && !last.ended && last.last < last.first + stages_[begun - 1].steps) {

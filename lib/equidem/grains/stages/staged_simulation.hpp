@@ -59,9 +59,9 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] std::vector<WallState> walls() const override { return present_.walls(); }
   [[nodiscard]] std::optional<CellState> cell() const override { return present_.cell(); }
   [[nodiscard]] double bytes_per_body() const override { return present_.bytes_per_body(); }
-  /// Arrays of the present GrainSimulation; stages: reports, a row for each stage that has begun; stage_walls and
-  /// stage_strain: where the present stage began; stage_bodies: presence and kind of those so far; stage_bonds: made so
-  /// far; stage_servos: reports of stages that are over; stage_idle: choices that held no body; stage_energies.
+  /// Arrays of the present GrainSimulation; stages: reports, a row for each stage that has begun; stage_walls (places)
+  /// and stage_start: where the present stage began; stage_bodies: presence and kind of those so far; stage_bonds: made
+  /// so far; stage_servos: reports of stages that are over; stage_idle: choices that held no body.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
   /// The number of stages that have begun in a saved state; 0: it is of no simulation in stages.
@@ -72,6 +72,8 @@ class StagedSimulation final : public AnySimulation {
   struct Start {
     std::vector<Vec2> walls;  ///< places
     Voigt strain = {};        ///< of the cell
+    /// At the start of the run; up to this stage. J
+    double initial = 0, potential = 0, changes = 0;
   };
   /// The bonds of all stages that have begun.
   struct Bonds {
@@ -98,11 +100,6 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] bool holds(const StageEnd& end);
   [[noreturn]] void refuse_endless() const;
 
-  /// At the start of the run; up to the present stage. J
-  struct Energies {
-    double initial = 0, potential = 0, changes = 0;
-  };
-
   std::vector<GrainStage> stages_;
   GrainOptions options_;
   Effects effects_;
@@ -110,7 +107,6 @@ class StagedSimulation final : public AnySimulation {
   Bonds bonds_;
   GrainSimulation present_;
   std::vector<StageReport> reports_;
-  Energies energies_;
 };
 
 }  // namespace equidem
