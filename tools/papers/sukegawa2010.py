@@ -292,7 +292,7 @@ def draw_sheet(pictures, title):
             one.set_axis_off()
         for one, (label, (centres, angles, half_axes, layers)) in zip(axes.flat, pictures):
             eq.plot.bodies(centres, half_axes, one, angles=angles, values=layers)
-            right, top = one.get_xlim()[1], one.get_ylim()[1]
+            right, top = np.max(centres, axis=0) + np.max(half_axes)
             one.plot([0, 0, right, right], [top, 0, 0, top], "k", linewidth=1)
             one.set_title(label)
         figure.savefig(f"{path}.png", dpi=150, bbox_inches="tight", metadata={"Software": None})
