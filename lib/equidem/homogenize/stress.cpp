@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/statics/internal_force.hpp"
 
 namespace equidem {
 namespace {
