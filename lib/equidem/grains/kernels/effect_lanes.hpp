@@ -52,8 +52,9 @@ EQUIDEM_ALWAYS_INLINE void store(const RollingMemory<Lanes>& memory, ContactEffe
 template <ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes roll(RollingLanes<Lanes>& of, const Lanes& repulsion, const ContactChanges<Lanes>& at,
                                  double dt, RollingMemory<Lanes>& memory) {
-  const SpringLosses<Lanes> losses = resist<kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility,
-                                                  repulsion, at, dt, memory.impulse, memory.stretch);
+  SpringLosses<Lanes> losses{};
+  resist<kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility, repulsion, at, dt, memory.impulse,
+               memory.stretch, losses);
   of.lost = losses.slip + losses.dashpot;
   return losses.released;
 }

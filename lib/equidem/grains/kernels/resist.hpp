@@ -120,11 +120,12 @@ struct SpringLosses {
 /// \param repulsion impulse that the limit is measured by
 /// \param[in,out] impulse on j
 /// \param[in,out] stretch of the spring, m
+/// \param[in,out] losses 0 before
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, const Lanes& dashpot, Lanes velocity,
-                                                 const Lanes& mean_velocity, const Lanes& mobility,
-                                                 const Lanes& repulsion, const ContactChanges<Lanes>& at, double dt,
-                                                 Lanes& impulse, Lanes& stretch) {
+EQUIDEM_ALWAYS_INLINE void resist(const SpringLanes<Lanes>& law, const Lanes& dashpot, Lanes velocity,
+                                  const Lanes& mean_velocity, const Lanes& mobility, const Lanes& repulsion,
+                                  const ContactChanges<Lanes>& at, double dt, Lanes& impulse, Lanes& stretch,
+                                  SpringLosses<Lanes>& losses) {
   const Bits<Lanes>& touch = at.touch;
   Lanes stretched = stretch;
   if constexpr (kind.verlet) {
@@ -146,7 +147,6 @@ EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, 
     tangent.slip_loss = only(lasting, tangent.slip_loss);
     tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
   }
-  SpringLosses<Lanes> losses{};
   if (at.any) [[unlikely]] {
     losses.released = law.half_spring * stretched * stretched;
     if constexpr (kind.verlet) {
@@ -161,7 +161,6 @@ EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, 
   losses.dashpot = tangent.dashpot_loss;
   impulse = on_j;
   stretch = tangent.stretch;
-  return losses;
 }
 
 }  // namespace equidem::eight

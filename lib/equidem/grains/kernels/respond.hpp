@@ -104,9 +104,10 @@ struct ContactMemory {
   RollingMemory<Lanes> rolling;
 };
 
+/// Of the normal dashpot, J, and of slip.
 template <class Lanes>
-struct ContactLosses {
-  Lanes normal, slip, dashpot, released;  ///< J; the last is what the springs of ended contacts held
+struct ContactLosses : SpringLosses<Lanes> {
+  Lanes normal;
 };
 
 /// \param dashpot normal, times dt, kg; hertz: kg/m^(1/4)
@@ -145,11 +146,8 @@ EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, c
   }
   memory.impulse = sum;
   if constexpr (kind.friction) {
-    const SpringLosses<Lanes> slip = resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip,
-                                                  motion.mobility, impulse, at, dt, memory.tangential, memory.stretch);
-    losses.slip = slip.slip;
-    losses.dashpot = slip.dashpot;
-    losses.released = slip.released;
+    resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility, impulse, at, dt,
+                 memory.tangential, memory.stretch, losses);
     if constexpr (kind.rolling) losses.released += roll<kind>(effects.rolling, impulse, at, dt, memory.rolling);
     if constexpr (kind.cohesion) losses.released += lost_at_range<kind>(effects.cohesion, motion, near, dt);
   } else {
