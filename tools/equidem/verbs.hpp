@@ -53,6 +53,9 @@ Run declare_export(CLI::App& command);
 Run declare_sweep(CLI::App& command);
 Run declare_study(CLI::App& command);
 
+/// Names of the options of all verbs that take no value, without hyphens in front.
+std::set<std::string> flags_of_verbs();
+
 inline constexpr std::array verbs{
     Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve, true},
     Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize, true},
@@ -65,8 +68,5 @@ inline constexpr std::array verbs{
     Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
 };
-
-/// Names of the options of all verbs that take no value, without hyphens in front.
-std::set<std::string> flags_of_verbs();
 
 }  // namespace equidem
