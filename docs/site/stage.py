@@ -30,7 +30,7 @@ def pages_of(source):
     for path in sorted([*(source / "docs").rglob("*.md"), *(source / "docs").rglob("*.rst")]):
         name = path.relative_to(source).as_posix()
         pages[name] = name[len("docs/"):]
-    for pattern in ("data/*.md", "data/benchmarks/*.md"):
+    for pattern in ("data/*.md", "data/benchmarks/*.md", "data/papers/*.md"):
         for path in sorted(source.glob(pattern)):
             name = path.relative_to(source).as_posix()
             pages[name] = name
