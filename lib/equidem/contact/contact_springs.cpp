@@ -207,6 +207,7 @@ ContactSprings chosen_springs(const ContactSprings& springs, const std::vector<s
   if (contacts.empty()) return springs.with_prestress({});
   const auto of_chosen = [&](const auto& value) {
     std::vector<std::decay_t<decltype(value(0))>> values;
+    values.reserve(contacts.size());
     for (const std::int32_t c : contacts) values.push_back(value(static_cast<std::size_t>(c)));
     return values;
   };

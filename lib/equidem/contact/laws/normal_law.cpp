@@ -27,6 +27,7 @@ constexpr std::array descriptions{EQUIDEM_LAWS(EQUIDEM_ENTRY)};
 
 std::vector<NamedValue<NormalLaw>> named_laws() {
   std::vector<NamedValue<NormalLaw>> names;
+  names.reserve(descriptions.size());
   for (const LawDescription& law : descriptions) names.push_back({law.law, law.name});
   return names;
 }
