@@ -75,8 +75,8 @@ def bodies(centres: npt.ArrayLike, radii: npt.ArrayLike, ax: Axes | None = None,
         raise BadInput("there is nothing to draw", "no body is there", "Draw an earlier state")
     places, width, turned = places[there], width[there], turned[there]
     axes = _axes(ax)
-    drawn = EllipseCollection(*width.T, np.degrees(turned), units="xy", offsets=places, transOffset=axes.transData,
-                              facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
+    drawn = EllipseCollection(width[:, 0], width[:, 1], np.degrees(turned), units="xy", offsets=places,
+                              transOffset=axes.transData, facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
     axes.add_collection(drawn)
     if values is not None:
         drawn.set_array(np.asarray(values)[there])
