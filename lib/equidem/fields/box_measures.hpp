@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What is read off bodies in a box while they move: surface, density away from walls and surface, stress of a
+/// Measures of bodies in a box while they move: surface, density away from walls and surface, stress of a
 /// rectangle, fields of stress, velocity, density and contacts on a coarse grid.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What a law of normal contact is made of.
+/// The pieces of a law of normal contact.
 ///
 /// A law is a struct without data: its `facts`, and the function by which its kind steps a contact: spring and dashpot
 /// of a force law, step of a map, step of the simultaneous law (laws.hpp).

@@ -92,7 +92,7 @@ struct ExactFlow {
   }
 };
 
-/// What the maps have in common: stable at any step; above omega dt = 1 a contact ends within a step.
+/// Facts that hold for all maps: they are stable at any step; above omega dt = 1 a contact ends within a step.
 constexpr LawFacts facts_of_map(LawFacts facts) {
   facts.kind = LawKind::map;
   facts.has_dashpot = false;

@@ -63,7 +63,7 @@ struct alignas(64) ContactEffects {
     stretch[lane] = rolled;
     impulse[lane] = pushed;
   }
-  /// Of the rolling spring, J.
+  /// Energy of the rolling spring, J.
   [[nodiscard]] double elastic(std::size_t lane) const { return 0.5 * stiffness[lane] * stretch[lane] * stretch[lane]; }
 };
 

@@ -22,7 +22,7 @@ struct RollingLanes {
   Lanes lost;      ///< found by roll(), J
 };
 
-/// What rolling carries from step to step.
+/// The state of rolling, kept from step to step.
 template <class Lanes>
 struct RollingMemory {
   Lanes impulse;  ///< on j at the lever, N s
@@ -84,8 +84,8 @@ EQUIDEM_ALWAYS_INLINE ContactChanges<Lanes> pressing(const ContactChanges<Lanes>
   return at;
 }
 
-/// What is lost as contacts enter and leave the range. The ledger counts a potential energy that is linear in the gap,
-/// at the time of the velocities, half the way of a step behind: there it begins and ends at once.
+/// The energy lost as contacts enter and leave the range. The ledger counts a potential energy that is linear in the
+/// gap, at the time of the velocities, half the way of a step behind: there it begins and ends at once.
 template <ResponseKind kind, class Lanes, class Motion>
 EQUIDEM_ALWAYS_INLINE Lanes lost_at_range(const CohesionLanes<Lanes>& of, const Motion& motion,
                                           const ContactChanges<Lanes>& near, double dt) {
@@ -95,7 +95,7 @@ EQUIDEM_ALWAYS_INLINE Lanes lost_at_range(const CohesionLanes<Lanes>& of, const 
   return only(near.begun, energy) - only(near.ended, energy);
 }
 
-/// Where the kind has them.
+/// The numbers of both effects; only those that the kind has are set.
 template <class Lanes>
 struct EffectLanes {
   RollingLanes<Lanes> rolling;
@@ -106,7 +106,7 @@ struct EffectLanes {
 template <bool verlet>
 constexpr ResponseKind with_effects{.friction = true, .verlet = verlet, .rolling = true, .cohesion = true};
 
-/// Those of a group, in loops that read them.
+/// The effects of a group; null in loops that do not read them.
 template <ResponseKind kind>
 EQUIDEM_ALWAYS_INLINE ContactEffects* effects_at(ContactEffects* effects, std::size_t group) {
   return kind.rolling || kind.cohesion ? effects + group : nullptr;

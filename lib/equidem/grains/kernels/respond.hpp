@@ -104,7 +104,7 @@ struct ContactMemory {
   RollingMemory<Lanes> rolling;
 };
 
-/// Of the normal dashpot, J, and of slip.
+/// Energies that a contact loses in a step, J: by its normal dashpot and by slip.
 template <class Lanes>
 struct ContactLosses : SpringLosses<Lanes> {
   Lanes normal;

@@ -306,7 +306,7 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where, std::span<
     for (const Wall& wall : scene.walls) {
       if (!is_behind(scene, scene.grains[i], wall)) continue;
       refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
-                   "a contact could not tell which way is out",
+                   "the normal of their contact would be undefined",
                    wall.shape == Wall::Shape::line ? "Move it, or turn the normal of the wall round" : "Move it");
     }
   }
