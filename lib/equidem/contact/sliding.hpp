@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Tangential contact in one step: spring, dashpot, Coulomb's limit.
+/// Tangential contact in one step: spring, dashpot, Coulomb's limit. Of one contact (Number: simd::One) or of several.
 ///
 /// The spring is stretched by the slip x, x' = v; it resists with kT x, the dashpot with c v. Friction carries at most
 /// mu N, N the normal force (none where N < 0). While sliding the spring keeps its stretch, at most mu N/kT; the rest
-/// of the work is lost. Without spring and dashpot (kT = c = 0) the contact always slides: mu N against the velocity.
+/// of the work is lost. Rolling resistance is the same law of the rolling velocity (Iwashita and Oda 1998).
 #pragma once
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "equidem/core/names.hpp"
+#include "equidem/core/simd.hpp"
 
 namespace equidem {
 
@@ -22,90 +22,101 @@ struct Sliding {
   double coefficient = 0;  ///< mu
 };
 
-/// Whether there is neither spring nor dashpot.
-inline bool is_rigid(const Sliding& law) {
-  return law.stiffness == 0 && law.dashpot == 0;
-}
-
-struct SlidingStep {
-  double force = 0;    ///< mean over the step, on the body whose slip velocity is given: negative where it resists a
-                       ///< positive velocity
-  double stretch = 0;  ///< of the spring at the end of the step, m
-  double slip_loss = 0,
-         dashpot_loss = 0;  ///< J, >= 0: work done on the contact at the mean velocity, less energy stored
-  bool slides = false;
+/// Constants of contacts in steps of dt.
+template <class Number>
+struct SlidingLaw {
+  Number friction;     ///< mu
+  Number half_spring;  ///< kT/2, N/m
+  Number spring;       ///< kT dt, N s/m
+  Number rate;         ///< kT dt²/2, kg
+  Number slack;        ///< 1/(kT dt), m/(N s); finite without a spring, too
 };
 
-/// mu N; a normal force that attracts carries no friction.
-inline double yield_of(const Sliding& law, double normal_force) {
-  return law.coefficient * std::max(normal_force, 0.0);
+/// \param stiffness kT, N/m
+/// \param compliance 1/kT, m/N
+template <class Number>
+EQUIDEM_ALWAYS_INLINE SlidingLaw<Number> sliding_law(const Number& friction, const Number& stiffness,
+                                                     const Number& compliance, double dt) {
+  return {friction, 0.5 * stiffness, dt * stiffness, (0.5 * dt * dt) * stiffness, (1 / dt) * compliance};
+}
+/// Likewise where some contacts have no spring.
+template <class Number>
+EQUIDEM_ALWAYS_INLINE SlidingLaw<Number> sliding_law(const Number& friction, const Number& stiffness, double dt) {
+  using namespace simd;
+  return sliding_law(friction, stiffness, 1 / choose(negative(Number{} - stiffness), stiffness, all<Number>(1)), dt);
 }
 
-/// \param resistance of spring and dashpot
-/// \param velocity mean over the step
-/// \param way slip in the step, m
-inline SlidingStep stick_through(const Sliding& law, double stretch, double resistance, double velocity, double step,
-                                 double way) {
-  return {.force = -resistance,
-          .stretch = law.stiffness > 0 ? stretch + way : 0,
-          .dashpot_loss = law.dashpot * velocity * velocity * step};
-}
+template <class Number>
+struct SlidingStep {
+  Number impulse;  ///< over the step, against the slip velocity, N s
+  Number stretch;  ///< of the spring at the end of the step, m
+  /// J, >= 0 by the midpoint rule: work done on the contact at the mean velocity, less energy stored.
+  Number slip_loss, dashpot_loss;
+  simd::Bits<Number> slides;
+};
 
-/// \param friction mu N, with the sign of the force that passed it
-/// \param velocity mean over the step under that friction
-/// \param way slip in the step, m
-inline SlidingStep slide_through(const Sliding& law, double stretch, double friction, double velocity, double step,
-                                 double way) {
-  // Held at what friction carries, but never carried further than the bodies moved: so work - energy stored >= 0.
-  const double largest = law.stiffness > 0 ? std::abs(friction) / law.stiffness : 0;
-  const double end = std::clamp(stretch + way, -largest, largest);
-  const double released = law.stiffness * (stretch - end) * (stretch + end) / 2;
-  return {.force = -friction, .stretch = end, .slip_loss = friction * velocity * step + released, .slides = true};
-}
-
-/// Explicit: force from the stretch at the end of the step with the velocity given (LAMMPS, YADE, Sukegawa
-/// (2.9)-(2.16)). The work of a spring that sticks exceeds the energy it stores by kT (v dt)²/2: the error of the
-/// integrator, counted nowhere. kT = c = 0: mu N even if that reverses the slip within the step; use the midpoint rule.
-/// The losses are those at the velocity given.
-/// \param way of the spring, m: in Verlet schemes that of the drift, in which the normal turns. By the
-///        velocity at its end the energy of the spring would differ from the work on it by the first order of the step.
-inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step,
-                                double way) {
-  const double yield = yield_of(law, normal_force);
-  if (is_rigid(law)) {
-    const double friction = velocity == 0 ? 0 : std::copysign(yield, velocity);
-    return slide_through(law, 0, friction, velocity, step, way);
+/// Midpoint rule: impulse, stretch and velocity are consistent over the step, so that sticking keeps energy and sliding
+/// only loses it.
+///
+/// Verlet schemes: explicit, with the stretch at the instant (LAMMPS, YADE, Sukegawa (2.9)-(2.16)). Half of the kicks
+/// before and after the drift acts along its slip; the loss of a drift may be negative by the error of the scheme.
+/// \tparam equal all contacts have a spring
+/// \param dashpot c dt, kg
+/// \param stretch at the start of the step
+/// \param velocity slip at the instant; midpoint rule: mean over the step as all other forces make it, of constant ones
+///        that at the start plus half its change
+/// \param mean_slip Verlet schemes: mean velocity over the drift before, in which the normal turns; it stretches the
+///        spring, whose energy would else differ from the work on it by the first order of the step
+/// \param mobility midpoint rule: mean velocity per impulse, half the inverse of the tangential mass, 1/kg
+/// \param before Verlet schemes: impulse on j in the last step
+/// \param yield mu times the normal impulse
+template <bool verlet, bool equal, class Number>
+EQUIDEM_ALWAYS_INLINE SlidingStep<Number> slide(const SlidingLaw<Number>& law, const Number& dashpot,
+                                                const Number& stretch, const Number& velocity, const Number& mean_slip,
+                                                const Number& mobility, const Number& before, const Number& yield,
+                                                double dt) {
+  using namespace simd;
+  Number resistance, mean = velocity;
+  if constexpr (!verlet) {
+    // mean = velocity - mobility * resistance, resistance = kT dt (stretch + mean dt/2) + c dt mean
+    const Number rate = law.rate + dashpot;
+    resistance = (law.spring * stretch + rate * velocity) * (1 / (1 + mobility * rate));
+  } else {
+    resistance = law.spring * (stretch + mean_slip * dt) + dashpot * velocity;
   }
-  const double resistance = law.stiffness * (stretch + way) + law.dashpot * velocity;
-  if (std::abs(resistance) <= yield) return stick_through(law, stretch, resistance, velocity, step, way);
-  return slide_through(law, stretch, std::copysign(yield, resistance), velocity, step, way);
-}
-inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
-  return sliding_step(law, stretch, velocity, normal_force, step, velocity * step);
+  const Bits<Number> slides = negative(yield - magnitude(resistance));
+  const Number friction = equal ? within(resistance, yield) : choose(slides, with_sign(yield, resistance), resistance);
+  if constexpr (!verlet) mean = velocity - mobility * friction;
+  // held at what friction carries, but never carried further than the bodies moved: so work - energy stored >= 0
+  const Number moved = stretch + (verlet ? mean_slip : mean) * dt;
+  Number end = choose(slides, within(moved, yield * law.slack), moved);
+  if constexpr (!equal) end = only(negative(Number{} - law.spring), end);
+  const Number released = law.half_spring * (stretch - end) * (stretch + end);
+  if constexpr (!verlet) {
+    const Number dragged = only(~slides, dashpot * mean);
+    return {friction, end, only(slides, friction * mean + released), dragged * mean, slides};
+  }
+  const Number loss = 0.5 * mean_slip * (friction - before) + released;
+  return {friction, end, only(slides, loss), only(~slides & negative(Number{} - dashpot), loss), slides};
 }
 
-/// Midpoint rule: force, stretch and velocity consistent over the step, so that sticking keeps energy and sliding only
-/// loses it. kT = c = 0: at most what stops the slip within the step, so that a slip that stops stays stopped; under a
-/// steady outside acceleration g that friction can hold, a slip of g dt/2 remains.
-/// \param velocity mean over the step as all other forces make it: of constant ones, at the start plus half its change
-/// \param inverse_mass of the effective tangential mass: 1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j, 1/kg
-inline SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, double velocity, double inverse_mass,
-                                         double normal_force, double step) {
-  assert(inverse_mass > 0 && step > 0);
-  const double yield = yield_of(law, normal_force);
-  const double mobility = 0.5 * step * inverse_mass;  // mean velocity per mean force
-  if (is_rigid(law)) {
-    const double friction = std::clamp(velocity / (2 * mobility), -yield, yield);
-    return slide_through(law, 0, friction, velocity - mobility * friction, step, 0);
+/// One contact by the midpoint rule; without a spring (kT = c = 0) at most what stops the slip within the step, so that
+/// a slip that stops stays stopped: under a steady acceleration g that friction can hold, a slip of g dt/2 remains.
+/// \param velocity, inverse_mass as in slide(), of the tangential mass: 1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j, 1/kg
+/// \param normal_impulse over the step, N s
+inline SlidingStep<double> slide(const Sliding& law, double stretch, double velocity, double inverse_mass,
+                                 double normal_impulse, double dt) {
+  assert(inverse_mass > 0 && dt > 0);
+  const double yield = law.coefficient * std::max(normal_impulse, 0.0), mobility = 0.5 * inverse_mass;
+  if (law.stiffness == 0 && law.dashpot == 0) {
+    const double friction = std::clamp(velocity / inverse_mass, -yield, yield);
+    return {friction, 0, friction * (velocity - mobility * friction), 0, true};
   }
-  // Sticking: spring and dashpot resist with kT (stretch + mean dt/2) + c mean, and mean = velocity - mobility * that.
-  const double rate = law.stiffness * step / 2 + law.dashpot, share = 1 + mobility * rate;
-  const double mean = (velocity - mobility * law.stiffness * stretch) / share;
-  const double resistance = (law.stiffness * stretch + rate * velocity) / share;
-  if (std::abs(resistance) <= yield) return stick_through(law, stretch, resistance, mean, step, mean * step);
-  const double friction = std::copysign(yield, resistance);
-  const double slipping = velocity - mobility * friction;
-  return slide_through(law, stretch, friction, slipping, step, slipping * step);
+  using simd::One;
+  const auto step =
+      slide<false, false>(sliding_law(One{law.coefficient}, One{law.stiffness}, dt), One{law.dashpot * dt},
+                          One{stretch}, One{velocity}, One{}, One{mobility}, One{}, One{yield}, dt);
+  return {step.impulse[0], step.stretch[0], step.slip_loss[0], step.dashpot_loss[0], step.slides[0] != 0};
 }
 
 }  // namespace equidem

@@ -28,6 +28,7 @@
 namespace equidem::simd {
 
 // Numbers in one vector of the processor.
+using One = double __attribute__((vector_size(8)));
 using Two = double __attribute__((vector_size(16)));
 using Four = double __attribute__((vector_size(32)));
 using Eight = double __attribute__((vector_size(64)));
@@ -207,8 +208,10 @@ EQUIDEM_ALWAYS_INLINE long long bits_of_all(const Lanes& bits) {
                        __builtin_shufflevector(bits, bits, 4, 5, 6, 7));
   } else if constexpr (sizeof(Lanes) == sizeof(Four)) {
     return (bits[0] | bits[1]) | (bits[2] | bits[3]);
-  } else {
+  } else if constexpr (sizeof(Lanes) == sizeof(Two)) {
     return bits[0] | bits[1];
+  } else {
+    return bits[0];
   }
 }
 template <class Lanes>

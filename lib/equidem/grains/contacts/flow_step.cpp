@@ -29,7 +29,7 @@ struct Trial {
   double impulse = 0, moment = 0, tangential = 0;
   double closing = 0;  // at the start, along the normal
   ExactStep normal_step;
-  SlidingStep sliding_step;
+  SlidingStep<double> sliding;
 };
 
 /// All that pushes a body over the step but gravity, as it stands in the sweeps.
@@ -148,9 +148,8 @@ double solve(GrainSystem& system, Trial& trial) {
     if (candidate.j >= 0) turning += turned(candidate.j, trial.lever_j);
     const double velocity = slip_velocity(system, candidate, geometry, relative) +
                             dot(outside.way, perpendicular(trial.normal)) / dt - 0.5 * turning;
-    trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, inverse_mass,
-                                               std::max(trial.impulse, 0.0) / dt, dt);
-    trial.tangential = trial.sliding_step.force * dt;
+    trial.sliding = slide(candidate.sliding, candidate.stretch, velocity, inverse_mass, trial.impulse, dt);
+    trial.tangential = -trial.sliding.impulse;
   }
   give(system, candidate, trial, 1);
   if (trial.impulse != 0) ++system.counters.evaluations;
@@ -290,9 +289,9 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
     candidate.moment = trial.moment;
     candidate.tangential_impulse = trial.tangential;
     if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
-      candidate.stretch = trial.sliding_step.stretch;
-      system.lost.lost_slip += trial.sliding_step.slip_loss;
-      system.lost.lost_tangential_dashpot += trial.sliding_step.dashpot_loss;
+      candidate.stretch = trial.sliding.stretch;
+      system.lost.lost_slip += trial.sliding.slip_loss;
+      system.lost.lost_tangential_dashpot += trial.sliding.dashpot_loss;
     }
     if (candidate.j < 0) {
       const Vec2 impulse = trial.impulse * trial.normal + trial.tangential * perpendicular(trial.normal);

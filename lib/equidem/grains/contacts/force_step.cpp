@@ -52,19 +52,18 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
 ///
 /// By the midpoint rule, with what other forces do to the slip over the step taken from the step before: a contact that
 /// sticks under a steady load does not creep.
-[[gnu::always_inline]] inline double slide(const GrainSystem& system, Candidate& candidate,
-                                           const ContactGeometry& geometry, Vec2 relative, double normal_force,
-                                           EnergyLedger& lost) {
+[[gnu::always_inline]] inline double tangential_impulse_of(const GrainSystem& system, Candidate& candidate,
+                                                           const ContactGeometry& geometry, Vec2 relative,
+                                                           double normal_impulse, EnergyLedger& lost) {
   const double velocity = slip_velocity(system, candidate, geometry, relative);
-  const double dt = system.dt();
   const double inverse_mass = inverse_tangential_mass(system, candidate, geometry);
   const double gain = gain_of_slip(system, candidate, geometry, inverse_mass);
-  const SlidingStep step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain,
-                                                 inverse_mass, normal_force, dt);
+  const SlidingStep<double> step =
+      slide(candidate.sliding, candidate.stretch, velocity + 0.5 * gain, inverse_mass, normal_impulse, system.dt());
   candidate.stretch = step.stretch;
   lost.lost_slip += step.slip_loss;
   lost.lost_tangential_dashpot += step.dashpot_loss;
-  return step.force * dt;
+  return -step.impulse;
 }
 
 /// The contacts of discs by a map.
@@ -104,7 +103,7 @@ void collide(GrainSystem& system, BlockSums& sums) {
     double tangential = 0;  // also where the friction of an earlier stage left one
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0)
-        tangential = slide(system, candidate, geometry, relative, std::max(candidate.impulse, 0.0) / dt, lost);
+        tangential = tangential_impulse_of(system, candidate, geometry, relative, candidate.impulse, lost);
       impulse += tangential * perpendicular(geometry.normal);
     }
     candidate.tangential_impulse = tangential;

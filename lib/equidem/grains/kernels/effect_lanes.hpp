@@ -15,7 +15,7 @@ namespace equidem::eight {
 
 template <class Lanes>
 struct RollingLanes {
-  SpringLanes<Lanes> spring;
+  SlidingLaw<Lanes> spring;
   Lanes dashpot;   ///< times dt, kg
   Lanes mobility;  ///< mean velocity per impulse, 1/kg
   Lanes velocity;  ///< of rolling, as that of resist()
@@ -31,7 +31,7 @@ struct RollingMemory {
 
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE RollingLanes<Lanes> rolling_lanes(const ContactEffects& of, const Lanes& velocity, double dt) {
-  return {spring_lanes(load<Lanes>(of.friction), load<Lanes>(of.stiffness), dt), load<Lanes>(of.dashpot),
+  return {sliding_law(load<Lanes>(of.friction), load<Lanes>(of.stiffness), dt), load<Lanes>(of.dashpot),
           load<Lanes>(of.half_mobility), velocity, Lanes{}};
 }
 

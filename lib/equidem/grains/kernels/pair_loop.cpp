@@ -29,7 +29,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, 
     return numbers.law;
   } else {
     return {numbers.dt * load<Lanes>(laws->stiffness), load<Lanes>(laws->least),
-            spring_lanes(load<Lanes>(laws->friction), load<Lanes>(laws->tangential_stiffness), numbers.dt)};
+            sliding_law(load<Lanes>(laws->friction), load<Lanes>(laws->tangential_stiffness), numbers.dt)};
   }
 }
 
@@ -46,9 +46,8 @@ struct DiscGeometry {
 template <class Lanes>
 struct Outcome {
   Lanes px, py, rim;  ///< impulse on j
-  ContactLosses<Lanes> losses;
-  bool any, changes;
-  Lanes torque, lost_rolling;  ///< with rolling
+  Lanes torque;       ///< with rolling
+  bool any;
 };
 
 template <ResponseKind kind, class Lanes>
@@ -160,7 +159,6 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
   }
   outcome.any = begin_and_end(touch, numbers.now, group.since, at, sums);
   if (!outcome.any) return;
-  outcome.changes = at.any;
   const ContactMotion<Lanes> motion = motion_of<kind>(geometry, group, slips, numbers.dt);
   sums.deepest = larger(only(at.touch, motion.overlap), sums.deepest);
   ContactMemory<Lanes> memory;
@@ -175,8 +173,9 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
     effect_lanes.rolling = rolling_lanes(*effects, rolling_velocity<kind, Lanes>(bodies, group, *effects), numbers.dt);
     memory.rolling = rolling_memory<Lanes>(*effects);
   }
-  outcome.losses = respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot), slip_dashpot, motion, at,
-                                      numbers.dt, effect_lanes, memory);
+  const ContactLosses<Lanes> losses = respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot),
+                                                         slip_dashpot, motion, at, numbers.dt, effect_lanes, memory);
+  add_losses<kind>(losses, effect_lanes.rolling.lost, at.any, sums);
   store(memory.impulse, group.impulse);
   outcome.px = memory.impulse * geometry.nx;
   outcome.py = memory.impulse * geometry.ny;
@@ -189,7 +188,6 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
   }
   if constexpr (kind.rolling) {
     store(memory.rolling, *effects);
-    outcome.lost_rolling = effect_lanes.rolling.lost;
     outcome.torque = load<Lanes>(effects->lever) * memory.rolling.impulse;
   }
   if (numbers.record) {
@@ -203,9 +201,8 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
 /// \tparam outward some bodies are behind the block
 template <ResponseKind kind, bool outward, class Lanes>
 EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
-                                BodyImpulse*& next, LaneSums<Lanes>& sums) {
+                                BodyImpulse*& next) {
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
-  add_losses<kind>(outcome.losses, outcome.lost_rolling, outcome.changes, sums);
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
   // the tangential impulse turns both bodies the same way round, and its lever is the radius
@@ -228,8 +225,8 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   PairBlock& block = system.contacts.near.blocks[b];
   const PairLaw& law = near.law;
   const LoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
-                                    spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
-                                                 all<Lanes>(1 / law.tangential_stiffness), system.dt())},
+                                    sliding_law(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
+                                                all<Lanes>(1 / law.tangential_stiffness), system.dt())},
                                    system.dt(),
                                    system.step + (system.options.verlet() ? 0 : 1),
                                    near.record};
@@ -256,9 +253,9 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
                                sums, outcome[g]);
     }
     if (first + here <= block.first_outward) {
-      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward, sums);
+      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward);
     } else {
-      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward, sums);
+      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward);
     }
   }
   add(sums, system.bodies.sums[b]);

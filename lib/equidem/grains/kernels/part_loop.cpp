@@ -55,8 +55,8 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbe
     return numbers.law;
   } else {
     return {numbers.dt * column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
-            spring_lanes(column<Lanes>(group, PartGroup::friction),
-                         column<Lanes>(group, PartGroup::tangential_stiffness), numbers.dt)};
+            sliding_law(column<Lanes>(group, PartGroup::friction),
+                        column<Lanes>(group, PartGroup::tangential_stiffness), numbers.dt)};
   }
 }
 
@@ -369,8 +369,8 @@ template <class Lanes>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
   const PairLaw law = system.contacts.near_parts.law.value_or(PairLaw{});
   const PartLoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
-                                        spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
-                                                     all<Lanes>(1 / law.tangential_stiffness), system.dt())},
+                                        sliding_law(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
+                                                    all<Lanes>(1 / law.tangential_stiffness), system.dt())},
                                        system.dt(),
                                        system.step + (kind.response.verlet ? 0 : 1),
                                        system.contacts.near.record};

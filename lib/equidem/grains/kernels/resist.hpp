@@ -3,6 +3,7 @@
 /// Spring, dashpot and limit of eight contacts, against slip and against rolling: impulse, losses and new stretch.
 #pragma once
 
+#include "equidem/contact/sliding.hpp"
 #include "equidem/core/simd.hpp"
 
 namespace equidem::eight {
@@ -26,71 +27,6 @@ struct ContactChanges {
   bool first;  ///< first step of the simulation: where the contacts were before is not known
 };
 
-/// Constants of springs with a limit.
-template <class Lanes>
-struct SpringLanes {
-  Lanes friction;     ///< mu
-  Lanes half_spring;  ///< k/2, N/m
-  Lanes spring;       ///< k dt, N s/m
-  Lanes rate;         ///< k dt²/2, kg
-  Lanes slack;        ///< 1/(k dt), m/(N s); finite without a spring, too
-};
-
-/// \param stiffness k, N/m
-/// \param compliance 1/k, m/N
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE SpringLanes<Lanes> spring_lanes(const Lanes& friction, const Lanes& stiffness,
-                                                      const Lanes& compliance, double dt) {
-  return {friction, 0.5 * stiffness, dt * stiffness, (0.5 * dt * dt) * stiffness, (1 / dt) * compliance};
-}
-/// Likewise where some contacts have no spring.
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE SpringLanes<Lanes> spring_lanes(const Lanes& friction, const Lanes& stiffness, double dt) {
-  return spring_lanes(friction, stiffness, 1 / choose(negative(Lanes{} - stiffness), stiffness, all<Lanes>(1)), dt);
-}
-
-template <class Lanes>
-struct Tangent {
-  Lanes impulse, stretch, slip_loss, dashpot_loss;
-  Bits<Lanes> slides;
-};
-
-/// sliding_step (verlet) and sliding_step_midpoint for contacts that have a spring, or no friction.
-/// \tparam equal all have a spring
-/// \param dashpot times dt, kg
-/// \param velocity slip at the start of the step; midpoint rule: with half the change by other forces
-/// \param mean_slip Verlet schemes: mean over the drift before, which stretches the spring
-/// \param mobility midpoint rule: mean velocity per impulse, 1/kg
-/// \param before Verlet schemes: impulse on j in the last step
-/// \param yield largest impulse of friction
-/// \return the impulse is that on i
-template <bool verlet, bool equal, class Lanes>
-EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide(const SpringLanes<Lanes>& law, const Lanes& dashpot, const Lanes& stretch,
-                                           const Lanes& velocity, const Lanes& mean_slip, const Lanes& mobility,
-                                           const Lanes& before, const Lanes& yield, double dt) {
-  Lanes resistance, mean = velocity;
-  if constexpr (!verlet) {
-    const Lanes rate = law.rate + dashpot;
-    resistance = (law.spring * stretch + rate * velocity) * (1 / (1 + mobility * rate));
-  } else {
-    resistance = law.spring * (stretch + mean_slip * dt) + dashpot * velocity;
-  }
-  const Bits<Lanes> slides = negative(yield - magnitude(resistance));
-  const Lanes friction = equal ? within(resistance, yield) : choose(slides, with_sign(yield, resistance), resistance);
-  if constexpr (!verlet) mean = velocity - mobility * friction;
-  const Lanes moved = stretch + (verlet ? mean_slip : mean) * dt;
-  Lanes end = choose(slides, within(moved, yield * law.slack), moved);
-  if constexpr (!equal) end = only(negative(Lanes{} - law.spring), end);
-  const Lanes released = law.half_spring * (stretch - end) * (stretch + end);
-  if constexpr (!verlet) {
-    const Lanes dragged = only(~slides, dashpot * mean);
-    return {friction, end, only(slides, friction * mean + released), dragged * mean, slides};
-  }
-  // half of the kicks before and after the drift, less the energy stored in the spring
-  const Lanes loss = 0.5 * mean_slip * (friction - before) + released;
-  return {friction, end, only(slides, loss), only(~slides & negative(Lanes{} - dashpot), loss), slides};
-}
-
 /// Losses of the tangential law in the drift in which contacts begin, where their first kick does half its work.
 template <class Lanes>
 struct FirstSlip {
@@ -99,7 +35,7 @@ struct FirstSlip {
 
 /// \param drag impulse of the dashpot \param tangential impulse on j
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE FirstSlip<Lanes> first_slip_of(const SpringLanes<Lanes>& law, const Tangent<Lanes>& tangent,
+EQUIDEM_ALWAYS_INLINE FirstSlip<Lanes> first_slip_of(const SlidingLaw<Lanes>& law, const SlidingStep<Lanes>& tangent,
                                                      const Lanes& drag, const Lanes& tangential, const Lanes& mean_slip,
                                                      const Bits<Lanes>& begun) {
   const Lanes stored = law.half_spring * tangent.stretch * tangent.stretch;
@@ -122,7 +58,7 @@ struct SpringLosses {
 /// \param[in,out] stretch of the spring, m
 /// \param[in,out] losses 0 before
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void resist(const SpringLanes<Lanes>& law, const Lanes& dashpot, Lanes velocity,
+EQUIDEM_ALWAYS_INLINE void resist(const SlidingLaw<Lanes>& law, const Lanes& dashpot, Lanes velocity,
                                   const Lanes& mean_velocity, const Lanes& mobility, const Lanes& repulsion,
                                   const ContactChanges<Lanes>& at, double dt, Lanes& impulse, Lanes& stretch,
                                   SpringLosses<Lanes>& losses) {
@@ -135,7 +71,7 @@ EQUIDEM_ALWAYS_INLINE void resist(const SpringLanes<Lanes>& law, const Lanes& da
     velocity -= mobility * impulse;  // without this contact's own part in it
   }
   const Lanes yield = law.friction * larger(repulsion, Lanes{});
-  Tangent<Lanes> tangent =
+  SlidingStep<Lanes> tangent =
       slide<kind.verlet, kind.equal>(law, dashpot, stretched, velocity, mean_velocity, mobility, impulse, yield, dt);
   if constexpr (!kind.bounded) {
     tangent.impulse = only(touch, tangent.impulse);

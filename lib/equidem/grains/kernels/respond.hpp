@@ -60,7 +60,7 @@ template <class Lanes>
 struct LawLanes {
   Lanes stiffness;  ///< times dt
   Lanes least;      ///< as in PairLaw
-  SpringLanes<Lanes> slip;
+  SlidingLaw<Lanes> slip;
 };
 
 /// Losses of normal dashpots in the drift in which contacts begin or end, with one kick of the two. Where a dashpot has
