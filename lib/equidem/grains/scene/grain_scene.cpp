@@ -91,6 +91,34 @@ bool is_behind(const GrainScene& scene, const Grain& grain, const Wall& wall) {
   return false;
 }
 
+void check_resistance(const PairProperties& pair, NormalLaw law) {
+  const bool slides = pair.tangential_ratio > 0, rolls = pair.rolling_friction > 0;
+  if (gives_force(law) && pair.friction > 0 && !slides)
+    bad_input_at("tangential_ratio", fmt::format("friction {} is given without a tangential spring", pair.friction),
+                 fmt::format("contacts by {} stick by one", to_string(law)),
+                 "Give tangential_ratio > 0, such as 2/7, or friction = 0");
+  if (pair.tangential_damping > 0 && !slides)
+    bad_input_at("tangential_damping", "tangential damping is given without a tangential spring",
+                 "it is measured by that spring", "Give tangential_ratio > 0");
+  if (rolls && !(pair.rolling_ratio > 0))
+    bad_input_at("rolling_ratio",
+                 fmt::format("rolling friction {} is given without a rolling spring", pair.rolling_friction),
+                 "contacts stick by one", "Give rolling_ratio > 0, such as 2/7");
+  if (!rolls && (pair.rolling_ratio > 0 || pair.rolling_damping > 0))
+    bad_input_at("rolling_friction", "a rolling spring is given without rolling friction", "it would carry nothing",
+                 "Give rolling_friction > 0");
+  if ((pair.cohesion > 0) != (pair.cohesion_range > 0))
+    bad_input_at(
+        "cohesion_range",
+        pair.cohesion > 0 ? "cohesion is given without its range" : "a range of cohesion is given without a force",
+        "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0, the range in m");
+  if (!gives_force(law) && (rolls || pair.cohesion > 0))
+    bad_input_at(rolls ? "rolling_friction" : "cohesion",
+                 fmt::format("{} has no {}", to_string(law), rolls ? "rolling resistance" : "cohesion"),
+                 "that law solves a contact by itself, without other forces of it",
+                 "Use " + names_of_laws(LawKind::force));
+}
+
 namespace {
 
 constexpr Bound<Grain> grain_bounds[] = {{"radius", &Grain::radius, Range::positive(), "m"}};
@@ -135,29 +163,6 @@ void check_grain(const GrainScene& scene, std::size_t i) {
   }
 }
 
-/// Rolling resistance and cohesion of a contact.
-void check_effects(const PairProperties& pair, const GrainOptions& options) {
-  if ((pair.rolling_ratio > 0 || pair.rolling_damping > 0) && !(pair.rolling_friction > 0))
-    bad_input("a rolling spring is given without rolling friction", "it would carry nothing",
-              "Give rolling_friction > 0");
-  if (pair.rolling_friction > 0 && !(pair.rolling_ratio > 0))
-    bad_input(fmt::format("rolling friction {} is given without a rolling spring", pair.rolling_friction),
-              "contacts stick by one", "Give rolling_ratio > 0, such as 2/7");
-  if ((pair.cohesion > 0) != (pair.cohesion_range > 0))
-    bad_input(
-        pair.cohesion > 0 ? "cohesion is given without its range" : "a range of cohesion is given without a force",
-        "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0");
-  if (!(pair.rolling_friction > 0) && !(pair.cohesion > 0)) return;
-  const char* what = pair.rolling_friction > 0 ? "rolling friction" : "cohesion";
-  if (!gives_force(options.law))
-    bad_input(fmt::format("{} is given with the law \"{}\"", what, to_string(options.law)),
-              "that law solves a contact by itself, without other forces of it",
-              "Use " + names_of_laws(LawKind::force));
-  if (options.ellipse_law == GrainOptions::EllipseLaw::enlarged)
-    bad_input(fmt::format("{} is given with the contact of enlarged ellipses", what),
-              "that contact knows no gap, and is for comparison alone", "Use the exact contact");
-}
-
 void check_pair(const PairProperties& pair, const GrainOptions& options) {
   if ((pair.stiffness != 0) == (pair.dimensionless != 0)) {
     bad_input(
@@ -168,16 +173,11 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
   check_positive(hardness, "stiffness of a contact");
   describe(options.law).dissipation(pair.restitution, pair.end);
   check_bounds(pair, pair_bounds, [] { return " of a contact"; });
-  if (gives_force(options.law) && pair.friction > 0 && !(pair.tangential_ratio > 0)) {
-    bad_input(fmt::format("friction {} is given without a tangential spring", pair.friction),
-              fmt::format("contacts by {} stick by one", to_string(options.law)),
-              "Give tangential_ratio > 0, such as 2/7, or friction 0");
-  }
-  if (pair.tangential_damping > 0 && !(pair.tangential_ratio > 0)) {
-    bad_input("tangential damping is given without a tangential spring", "it is measured by that spring",
-              "Give tangential_ratio > 0");
-  }
-  check_effects(pair, options);
+  check_resistance(pair, options.law);
+  if (options.ellipse_law == GrainOptions::EllipseLaw::enlarged && (pair.rolling_friction > 0 || pair.cohesion > 0))
+    bad_input(fmt::format("{} is given with the contact of enlarged ellipses",
+                          pair.rolling_friction > 0 ? "rolling friction" : "cohesion"),
+              "that contact knows no gap, and is for comparison alone", "Use the exact contact");
 }
 
 /// The range of the law, by a of the lightest bodies of every two kinds.

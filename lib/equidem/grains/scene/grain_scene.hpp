@@ -166,6 +166,10 @@ double reference_length(const GrainScene& scene, const GrainOptions& options);
 using PlaceOfGrain = std::function<std::string(std::size_t grain)>;
 using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 
+/// \throws Error (bad_input), its place the name of the property: friction, rolling resistance or cohesion that miss a
+///         number that they need, or that the law does not carry
+void check_resistance(const PairProperties& pair, NormalLaw law);
+
 /// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and
 ///         pairs that do not match, a table that is not symmetric, neither or both of stiffness and dimensionless,
 ///         restitution out of range for the law, friction negative, rolling or cohesion incomplete or with a law that

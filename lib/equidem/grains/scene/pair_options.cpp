@@ -134,29 +134,12 @@ void set_friction(const PairOptions& options, NormalLaw law, double tangential_z
   } else if (properties.tangential_ratio > 0) {
     properties.tangential_damping = tangential_zeta;
   }
-  if (gives_force(law) && properties.tangential_ratio == 0)
-    bad_input_at("tangential_ratio", "friction is given without a tangential spring",
-                 fmt::format("contacts by {} stick by one", to_string(law)),
-                 "Give tangential_ratio > 0, such as 2/7, or friction = 0");
-  if (properties.tangential_damping > 0 && properties.tangential_ratio == 0)
-    bad_input_at("tangential_damping", "tangential damping is given without a tangential spring",
-                 "it is measured by that spring", "Give tangential_ratio > 0");
 }
 
 /// Rolling resistance, and cohesion. \param tangential_zeta as in set_friction
-void set_effects(const PairOptions& options, NormalLaw law, double tangential_zeta, PairProperties& properties) {
-  const bool rolling = options.rolling_friction > 0, cohesion = options.cohesion > 0;
-  if (cohesion && options.cohesion_range == 0)
-    bad_input_at("cohesion", "cohesion is given without its range", "bodies attract by a force within a gap",
-                 "Add cohesion_range = ... in m");
-  if (!rolling && !cohesion) return;
-  if (!gives_force(law))
-    bad_input_at(rolling ? "rolling_friction" : "cohesion",
-                 fmt::format("{} has no {}", describe(law).name, rolling ? "rolling resistance" : "cohesion"),
-                 "that law solves a contact by itself, without other forces of it",
-                 "Use " + names_of_laws(LawKind::force));
-  if (cohesion) properties.cohesion = options.cohesion, properties.cohesion_range = options.cohesion_range;
-  if (!rolling) return;
+void set_effects(const PairOptions& options, double tangential_zeta, PairProperties& properties) {
+  if (options.cohesion > 0) properties.cohesion = options.cohesion, properties.cohesion_range = options.cohesion_range;
+  if (!(options.rolling_friction > 0)) return;
   const double usual = properties.tangential_ratio > 0 ? properties.tangential_ratio : 2.0 / 7;
   properties.rolling_friction = options.rolling_friction;
   properties.rolling_ratio = options.rolling_ratio.value_or(usual);
@@ -207,7 +190,8 @@ PairContact contact_of(const PairOptions& options, NormalLaw law, const MeetingB
   contact.properties.end = describe(law).usual_end;
   const double tangential_zeta = set_rebound(options.rebound, bodies, contact.properties);
   set_friction(options, law, tangential_zeta, contact.properties);
-  set_effects(options, law, tangential_zeta, contact.properties);
+  set_effects(options, tangential_zeta, contact.properties);
+  check_resistance(contact.properties, law);
   check_restitution(law, contact.properties);
   std::visit(StiffnessOf(law, bodies, contact), options.stiffness);
   return contact;
