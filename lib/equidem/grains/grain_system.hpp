@@ -17,7 +17,6 @@
 #include "equidem/grains/kernels/bond_loop.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
@@ -67,10 +66,8 @@ struct Candidate : ContactConstants {
 };
 
 /// A contact as it is reported, saved and handed on.
-struct ContactState {
-  std::int32_t i = 0, j = 0;            ///< bodies, or a body and a wall ~j
-  std::int32_t part_i = 0, part_j = 0;  ///< indices in Shapes::parts; 0: of a wall, or in scenes of discs
-  std::int32_t a = 0, b = 0;            ///< of the image of j that i meets, as in PeriodicImage
+struct ContactState : Partners {
+  std::int32_t a = 0, b = 0;  ///< of the image of j that i meets, as in PeriodicImage
   int mode = 0;
   bool parted = false;
   std::int64_t steps = 0;
@@ -191,16 +188,23 @@ struct Walls {
 
 /// Pairs that touch or may touch soon.
 struct ContactList {
-  NearPairs near;
-  NearParts near_parts;
-  NearWalls near_walls;
+  std::array<NearLists, 4> near;  ///< force laws: in the order of Between
+  std::optional<PairLaw> law;     ///< as common_law()
+  bool record = false;            ///< record the present step for contacts()
+  NearPairs pairs;
+  NearParts parts;
   /// Contacts by maps and simultaneous laws, ordered by i, then j (walls last).
   std::vector<Candidate> candidates;
   std::vector<ExactPair> exact_pairs;  ///< simultaneous laws: one for each candidate
   NeighbourFinder finder;
-  std::vector<Circle> circles;   ///< bodies, for the finder
-  double margin = 0, moved = 0;  ///< margin of the candidates; upper bound of the motion since they were found, m
-  double base_margin = 0;        ///< margin for slow bodies, m
+  const NeighbourList* neighbours = nullptr;  ///< list of the finder
+  std::vector<Circle> circles;                ///< bodies, for the finder
+  Skin skin;                                  ///< of the list of the finder
+  double base_margin = 0;                     ///< margin for slow bodies, m
+
+  [[nodiscard]] NearLists& of(Between between) { return near[static_cast<std::size_t>(between)]; }
+  [[nodiscard]] const NearLists& of(Between between) const { return near[static_cast<std::size_t>(between)]; }
+  [[nodiscard]] bool has(Between between) const { return of(between).active(); }
 };
 
 struct BondList {
@@ -248,6 +252,11 @@ struct GrainSystem {
   [[nodiscard]] double lag() const { return options.verlet() ? 0 : 0.5 * options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const Grain& grain(std::int32_t body) const { return scene.grains[bodies.grain_of[body]]; }
+  /// A part of a body; in scenes of discs the body.
+  [[nodiscard]] GrainPart part(std::int32_t body, std::int32_t number) const {
+    const double radius = bodies.constants[body].radius;
+    return shapes.parts.empty() ? GrainPart{{}, radius, radius, radius} : shapes.parts[number];
+  }
   /// Of a body and another one, or an image of it, or a wall ~j.
   [[nodiscard]] const PairProperties& properties(std::int32_t i, std::int32_t j) const {
     const int other = j >= 0 ? bodies.constants[body_of(j)].kind : scene.walls[~j].kind;
@@ -269,7 +278,7 @@ struct GrainSystem {
   }
   /// Whether bodies meet images of others.
   [[nodiscard]] bool meets_images() const {
-    return cell.active && (contacts.near.active || contacts.near_parts.active);
+    return cell.active && (contacts.has(Between::discs) || contacts.has(Between::ellipses));
   }
   /// Place of a body or an image at the start of the step.
   [[nodiscard]] Vec2 position_of(std::int32_t j) const {

@@ -17,7 +17,6 @@
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -59,7 +58,7 @@ void find_impulses(GrainSystem& system, CandidateLoop collide, BlockMove move) {
   if (system.bonds.breakable && !system.options.verlet() && break_bonds(system) && system.bonds.held > 0)
     push_springs(system);
   const bool at_once = system.bonds.held == 0 && !collide;
-  if (system.contacts.near_parts.active) load_part_bodies(system);
+  if (system.contacts.has(Between::ellipses)) load_part_bodies(system);
   collide_bodies(system, collide, at_once ? move : nullptr);  // Contacts, Gather, Kick of each block, Count
   if (system.bonds.held > 0) add_bond_impulses(system);
   if (at_once || !move) return;

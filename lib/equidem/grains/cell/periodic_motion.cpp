@@ -10,7 +10,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
@@ -91,9 +90,8 @@ void add_moments(const GrainSystem& system, std::size_t block, CellSums& sums) {
       sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
     }
   };
-  if (system.contacts.near.active) add(system.contacts.near.blocks[block].outward);
-  if (!system.contacts.near_parts.active) return;
-  for (const NearParts::List& list : system.contacts.near_parts.blocks[block].lists) add(list.outward);
+  for (const NearLists& lists : system.contacts.near)
+    if (lists.active()) add(lists.blocks[block].outward);
 }
 
 /// Sum of force times branch over the contacts, and of m u u over the bodies.
@@ -141,28 +139,22 @@ void set_cell(GrainSystem& system, const GrainSystem* before) {
 }
 
 void measure_resistance(GrainSystem& system) {
-  const NearPairs& near = system.contacts.near;
   Vec2 stiffness, viscosity;
-  for (const PairBlock& block : near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[block.first(p)].position;
-      const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
-      if (!(distance > 0) || (system.cohesion && overlap == 0)) continue;
-      const double stiffness_of_pair = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      ContactResistance of =
-          resistance_along(system.law(), stiffness_of_pair, block.groups[g].dashpot[k] / system.dt(), overlap);
-      if (system.friction) {
-        of.k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        of.c_t = block.slips[g].dashpot[k] / system.dt();
-      }
-      add_resistance(branch, branch / distance, of, stiffness, viscosity);
-    }
-  }
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+  each_list(system.contacts, [&](const NearList& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
-      if (!list.touching(p)) continue;
+      if (!list.touching(p) || list.between == Between::walls) continue;
+      if (list.between == Between::discs) {
+        const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+        const Vec2 branch = system.position_of(list.second(p)) - system.bodies.motions[list.first(p)].position;
+        const double distance = norm(branch), overlap = std::max(list.groups[g].reach[k] - distance, 0.0);
+        if (!(distance > 0) || (system.cohesion && overlap == 0)) continue;
+        const PairLaw law = law_of(system, list, p);
+        ContactResistance of =
+            resistance_along(system.law(), law.stiffness, list.groups[g].dashpot[k] / system.dt(), overlap);
+        if (system.friction) of.k_t = law.tangential_stiffness, of.c_t = list.slips[g].dashpot[k] / system.dt();
+        add_resistance(branch, branch / distance, of, stiffness, viscosity);
+        continue;
+      }
       const ContactState contact = state_of(system, list, p);
       if (system.cohesion && !(contact.overlap > 0)) continue;
       const ContactConstants constants = constants_of(system, contact.i, contact.j);
@@ -221,8 +213,8 @@ void drift_in_cell(GrainSystem& system) {
   const Tensor2& gradient = cell.gradient;
   // two bodies that touch come nearer by their own ways and by that of the cell along their branch
   const double stretch = std::sqrt(contraction(gradient, gradient));
-  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.margin + system.range);
-  const bool near = system.contacts.near.active;
+  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.skin.margin + system.range);
+  const bool near = system.contacts.has(Between::discs);
   find_longest_way(system, [&](std::size_t block) {
     CellSums& sums = cell.sums[block] = {};
     double longest = 0;
@@ -243,7 +235,7 @@ void drift_in_cell(GrainSystem& system) {
       if (!near) continue;
       GrainMotion seen = motion;
       seen.velocity += with_cell;
-      system.contacts.near.bodies[i] = pair_body(body, seen, gain, turn);
+      system.contacts.pairs.bodies[i] = pair_body(body, seen, gain, turn);
     }
     return longest;
   });
@@ -332,8 +324,8 @@ void list_images_of_shapes(GrainSystem& system) {
     shapes.first_part.push_back(static_cast<std::int32_t>(shapes.parts.size()));
   }
   turn_images(system);
-  NearParts& near = system.contacts.near_parts;
-  if (!near.active) return;
+  if (!system.contacts.has(Between::ellipses)) return;
+  NearParts& near = system.contacts.parts;
   near.bodies.resize(shapes.parts.size());
   near.met.resize(shapes.parts.size());
 }
@@ -345,21 +337,18 @@ Periods periods_of(const PeriodicCell& cell) {
   return {{cell.width, 0}, rows ? Vec2{cell.shift, cell.height} : Vec2{}};
 }
 
-void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts) {
+void list_contacts(GrainSystem& system, std::vector<ContactState> contacts) {
   const std::size_t count = system.bodies.constants.size();
   std::vector<PeriodicImage>& images = system.cell.images;
   if (system.meets_images()) {
     std::vector<Circle> circles;
     for (std::size_t k = 0; k < count; ++k)
       circles.push_back({system.bodies.motions[k].position, system.bodies.constants[k].radius});
-    images = images_near(circles, system.cell.now, system.contacts.margin + system.range);
-    if (system.contacts.near.active) system.contacts.near.bodies.resize(count + images.size());
+    images = images_near(circles, system.cell.now, system.contacts.skin.margin + system.range);
+    if (system.contacts.has(Between::discs)) system.contacts.pairs.bodies.resize(count + images.size());
     list_images_of_shapes(system);
   }
-  std::vector<ContactState> discs, parts;
-  for (ContactState contact : contacts) {
-    if (contact.j < 0) continue;
-    std::vector<ContactState>& list = are_discs(system, contact.i, contact.j) ? discs : parts;
+  for (ContactState& contact : contacts) {
     if (contact.a != 0 || contact.b != 0) {
       const auto place = std::ranges::lower_bound(images, PeriodicImage{contact.j, contact.b, contact.a});
       if (place == images.end() || *place != PeriodicImage{contact.j, contact.b, contact.a})
@@ -370,10 +359,8 @@ void list_contacts(GrainSystem& system, const std::vector<ContactState>& contact
         contact.part_j += system.shapes.first_part[image] - system.shapes.first_part[contact.j];
       contact.j = image;
     }
-    list.push_back(contact);
   }
-  if (system.contacts.near.active) take_near_pairs(system, std::move(discs));
-  if (system.contacts.near_parts.active) take_near_parts(system, std::move(parts));
+  take_contacts(system, std::move(contacts));
 }
 
 void find_images(GrainSystem& system) {
@@ -390,21 +377,21 @@ void turn_images(GrainSystem& system) {
 void place_images(GrainSystem& system) {
   const MovingCell& cell = system.cell;
   const std::size_t count = system.bodies.constants.size();
-  NearPairs& pairs = system.contacts.near;
-  NearParts& near_parts = system.contacts.near_parts;
+  NearPairs& pairs = system.contacts.pairs;
+  NearParts& near_parts = system.contacts.parts;
   system.bodies.blocks.each_piece(cell.images.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const PeriodicImage& image = cell.images[k];
       const Vec2 shift = cell.now.shift(image);
       const Vec2 apart = cell.deforms ? cell.gradient * cell.before.shift(image) : Vec2{};
-      if (pairs.active) {
+      if (system.contacts.has(Between::discs)) {
         PairBody& seen = pairs.bodies[count + k];
         seen = pairs.bodies[image.body];
         seen.position += shift;
         seen.velocity += apart;
         seen.middle_velocity += apart;
       }
-      if (!near_parts.active) continue;
+      if (!system.contacts.has(Between::ellipses)) continue;
       const auto own = static_cast<std::size_t>(system.shapes.first_part[image.body]);
       const auto first = static_cast<std::size_t>(system.shapes.first_part[count + k]),
                  last = static_cast<std::size_t>(system.shapes.first_part[count + k + 1]);
@@ -441,7 +428,7 @@ void wrap_bodies(GrainSystem& system) {
     position += cell.now.shift(move);
     cell.crossed[k].a -= move.a;
     cell.crossed[k].b -= move.b;
-    if (system.contacts.near.active) system.contacts.near.bodies[k].position = position;
+    if (system.contacts.has(Between::discs)) system.contacts.pairs.bodies[k].position = position;
   }
   cell.next = cell.now;
   if (!changed) return;
@@ -452,7 +439,7 @@ void wrap_bodies(GrainSystem& system) {
     contact.a += moves[contact.i].a - moves[contact.j].a;
     contact.b += moves[contact.i].b - moves[contact.j].b;
   }
-  list_contacts(system, contacts);
+  list_contacts(system, std::move(contacts));
   find_candidates(system);
 }
 

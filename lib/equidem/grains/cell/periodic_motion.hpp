@@ -27,9 +27,8 @@ struct PeriodicCell;
 
 Periods periods_of(const PeriodicCell& cell);
 
-/// Find the images again, and replace the near pairs and parts by contacts, in any order; those with walls are not
-/// read.
-void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts);
+/// Find the images again, and replace the contacts of all lists, in any order.
+void list_contacts(GrainSystem& system, std::vector<ContactState> contacts);
 
 /// Find the images again for the present margin of the candidates; contacts keep their state.
 void find_images(GrainSystem& system);

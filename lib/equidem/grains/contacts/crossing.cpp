@@ -12,31 +12,22 @@
 namespace equidem {
 namespace {
 
-/// Within a step, `share` of it gone: ways and turns are uniform. \param body or an image
-GrainMotion motion_at(const GrainSystem& system, std::int32_t body, double share) {
-  const auto own = static_cast<std::size_t>(system.body_of(body));
-  GrainMotion motion = system.bodies.motions[own];
-  const Vec2 from = system.position_of(body);
-  motion.position = from + share * (system.next_position_of(body) - from);
-  motion.angle += share * (system.bodies.next[own].angle - motion.angle);
-  return motion;
-}
-
 struct Pose {
   GrainPart part;
   Vec2 centre, axis;
   [[nodiscard]] Ellipse ellipse() const { return {part.a, part.b, axis}; }
 };
 
+/// Within a step, `share` of it gone: ways and turns are uniform. \param body or an image
 Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_index, double share) {
-  const GrainMotion motion = motion_at(system, body, share);
-  if (system.shapes.parts.empty()) {
-    const double radius = system.bodies.constants[system.body_of(body)].radius;
-    return {{{}, radius, radius, radius}, motion.position, {1, 0}};
-  }
-  const GrainPart& part = system.shapes.parts[part_index];
-  const Vec2 axis = axis_at(motion.angle);
-  return {part, motion.position + offset_of(part, axis), axis};
+  const std::int32_t own = system.body_of(body);
+  const Vec2 from = system.position_of(body), to = system.next_position_of(body);
+  const Vec2 place = share == 1 ? to : from + share * (to - from);
+  const GrainPart part = system.part(own, part_index);
+  if (part.is_round() && part.offset == Vec2{}) return {part, place, {1, 0}};
+  const double angle = system.bodies.motions[own].angle;
+  const Vec2 axis = axis_at(angle + share * (system.bodies.next[own].angle - angle));
+  return {part, place + offset_of(part, axis), axis};
 }
 
 }  // namespace
@@ -193,17 +184,7 @@ void refuse_crossings(const GrainSystem& system) {
       check_parts(system, of);
     }
   };
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      const Partners of{block.first(p), block.second(p)};
-      const auto i = static_cast<std::size_t>(of.i), j = static_cast<std::size_t>(system.body_of(of.j));
-      check_discs(system, of,
-                  {system.position_of(of.j) - system.bodies.motions[i].position,
-                   system.next_position_of(of.j) - system.bodies.next[i].position, system.bodies.constants[i].radius,
-                   system.bodies.constants[j].radius});
-    }
-  }
-  each_list(system.contacts, [&](const NearParts::List& list) {
+  each_list(system.contacts, [&](const NearList& list) {
     for (std::size_t p = 0; p < list.count; ++p) check(partners_of(system, list, p));
   });
   for (const Candidate& candidate : system.contacts.candidates) check({candidate.i, candidate.j});

@@ -556,7 +556,8 @@ template <class Lanes>
 void Resist<kind>::run(GrainSystem& system, BondBatch& batch) {
   PackedBonds& packed = system.bonds.packed;
   const bool verlet = system.options.verlet();
-  if (!verlet && !kind.opening && system.contacts.near.active && system.friction) {  // else no impulses are along rims
+  if (!verlet && !kind.opening && system.contacts.has(Between::discs) &&
+      system.friction) {  // else no impulses are along rims
     for (std::size_t n = batch.first_body; n < batch.end_body; ++n) {
       const auto b = static_cast<std::size_t>(packed.bodies[n]);
       turn_rims(system.bodies.impulses[b], system.bodies.constants[b]);

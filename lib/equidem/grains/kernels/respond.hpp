@@ -189,7 +189,8 @@ EQUIDEM_ALWAYS_INLINE bool begin_and_end(const Bits<Lanes>& touch, std::int64_t 
   at.begun = touch & ~at.alive;
   at.ended = at.alive & ~touch;
   if (at.any) {
-    store(choose(at.begun, all<Bits<Lanes>>(now), choose(at.ended, all<Bits<Lanes>>(PairGroup::apart), before)), since);
+    store(choose(at.begun, all<Bits<Lanes>>(now), choose(at.ended, all<Bits<Lanes>>(ContactGroup::apart), before)),
+          since);
     sums.begun -= at.begun;
   }
   sums.evaluations -= touch;

@@ -9,7 +9,6 @@
 #include "equidem/contact/restitution.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -174,7 +173,7 @@ void find_single_contacts(GrainSystem& system, const NeighbourList& list) {
     for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
       const WallContact contact =
           nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
-      if (contact.distance <= system.bodies.constants[i].radius + system.contacts.margin)
+      if (contact.distance <= system.bodies.constants[i].radius + system.contacts.skin.margin)
         add(i, ~static_cast<std::int32_t>(w));
     }
   }
@@ -195,27 +194,25 @@ void find_candidates(GrainSystem& system) {
       circles.push_back({body.centre + system.cell.now.shift(image), body.radius});
     }
   }
-  const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin + system.range);
+  const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.skin.margin + system.range);
+  system.contacts.neighbours = &list;
   if (!gives_force(system.options.law)) find_single_contacts(system, list);
-  find_near_walls(system);
+  find_near_lists(system);
   cover_joints(system);
-  system.contacts.near.outer = &list;
-  if (system.contacts.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
-  if (system.contacts.near_parts.active) find_near_parts(system, reach_of(system));
-  system.contacts.moved = 0;
+  system.contacts.skin.moved = 0;
   ++system.counters.rebuilds;
 }
 
 bool refresh_candidates(GrainSystem& system, double reach) {
-  if (2 * (system.contacts.moved + reach) <= system.contacts.margin) {
-    system.contacts.moved += reach;
-    if (system.contacts.near.active) refresh_near_pairs(system, reach);
-    if (system.contacts.near_parts.active) refresh_near_parts(system, reach);
+  ContactList& contacts = system.contacts;
+  if (contacts.skin.holds(reach)) {
+    contacts.skin.moved += reach;
+    refresh_near_lists(system, reach);
     return false;
   }
-  system.contacts.margin = std::max(system.contacts.base_margin, 8 * reach);
+  contacts.skin.margin = std::max(contacts.base_margin, 8 * reach);
   find_candidates(system);
-  system.contacts.moved = system.contacts.near.moved = system.contacts.near_parts.moved = reach;
+  contacts.skin.moved = contacts.pairs.skin.moved = contacts.parts.skin.moved = reach;
   return true;
 }
 
