@@ -34,7 +34,7 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
 /// Set the constants of a new contact.
 void set_constants(const GrainSystem& system, NearList& list, std::size_t p) {
   static constexpr GrainBody wall{};
-  static constexpr GrainPart no_part{.size = std::numeric_limits<double>::infinity()};
+  static constexpr GrainPart no_part{{}, 0, 0, std::numeric_limits<double>::infinity()};
   const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
   const double dt = system.dt();
   const Partners of = partners_of(system, list, p);
