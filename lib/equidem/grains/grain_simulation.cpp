@@ -437,7 +437,7 @@ double GrainSimulation::bytes_per_body() const {
       system.contacts.candidates.capacity() * sizeof(Candidate) + system.shapes.parts.capacity() * sizeof(GrainPart) +
       system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
       system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
-      (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
+      (system.contacts.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
       system.bonds.breaks.capacity() * sizeof(BondBreak) + system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.constants.size());
 }

@@ -249,7 +249,14 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   system.contacts.candidates.clear();
   system.contacts.exact_pairs.clear();
   if (system.contacts.has(Between::discs)) load_pair_bodies(system);
-  list_contacts(system, state.contacts);
+  const auto is_far = [&](const ContactState& c) {
+    const std::vector<GrainBody>& bodies = system.bodies.constants;
+    return c.j >= 0 && norm(system.branch(c)) > 2 * (bodies[c.i].radius + bodies[c.j].radius) + system.range;
+  };
+  if (system.cell.active && std::ranges::any_of(state.contacts, is_far))
+    bad_input("the state has a contact with an image that is far away", "it is of another scene, or damaged",
+              go_on_with);
+  take_contacts(system, state.contacts);
   find_candidates(system);
   if (!gives_force(system.options.law)) {
     auto candidate = system.contacts.candidates.begin();

@@ -50,6 +50,7 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
   system.counters.evaluations += sums.evaluations;
   system.counters.contacts += sums.contacts;
   system.deepest = std::max(system.deepest, sums.deepest);
+  system.cell.on_images += sums.on_images;
   for (std::size_t w = 0; w < sums.on_walls.size(); ++w) system.walls.loads[w].add_in_step(sums.on_walls[w]);
   sums = {};
 }
@@ -57,7 +58,6 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
 }  // namespace
 
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
-  if (!system.cell.images.empty()) place_images(system);
   const bool keeps = !system.bodies.impulses_before.empty();
   if (keeps) system.bodies.impulses_before.swap(system.bodies.impulses);
   const bool clear = keeps || !system.bodies.cleared;
@@ -89,7 +89,7 @@ void connect_blocks(GrainSystem& system) {
   std::iota(earliest.begin(), earliest.end(), std::size_t{0});
   const auto connect = [&](const OutwardImpulses& outward, std::size_t from) {
     for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
-      const std::int32_t body = system.body_of(outward.bodies[k]);
+      const std::int32_t body = outward.bodies[k];
       const std::size_t to = blocks.of(static_cast<std::size_t>(body));
       inwards[to].push_back({body, &outward.impulses[k]});
       earliest[to] = std::min(earliest[to], from);

@@ -52,7 +52,8 @@ struct Outcome {
 };
 
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const ContactGroup& group, DiscGeometry<Lanes>& found) {
+EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const ContactGroup& group, const PairImages* images,
+                                   const CellShifts& shifts, DiscGeometry<Lanes>& found) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
   alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, minus, minus, 0, 0};
@@ -63,6 +64,14 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const ContactGroup& g
     m[k] = load<Lanes>(&bodies[group.j[k]].position.x) + as<Lanes>(bits_of(i) ^ turned);
   }
   transpose(m);
+  if (images != nullptr) {
+    const Vectors<Lanes> shift = shift_of<Lanes>(shifts.places, *images);
+    const Vectors<Lanes> velocity = shift_of<Lanes>(shifts.velocities, *images);
+    m[0] += shift.x;
+    m[1] += shift.y;
+    m[2] += velocity.x;
+    m[3] += velocity.y;
+  }
   Lanes& bx = m[0];
   const Lanes &by = m[1], &u = m[2], &v = m[3];
   const Lanes square = square_of_branch(bx, by);
@@ -202,9 +211,10 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
 
 /// \tparam outward some bodies are behind the block
 template <ResponseKind kind, bool outward, class Lanes>
-EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
-                                BodyImpulse*& next, LaneSums<Lanes>& sums) {
+EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const PairImages* images, const Outcome<Lanes>& outcome,
+                                const Receivers& to, BodyImpulse*& next, LaneSums<Lanes>& sums) {
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
+  if (images != nullptr) add_on_images(outcome.px, outcome.py, *images, sums);
   add_losses<kind>(outcome.losses, outcome.lost_rolling, outcome.changes, sums);
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
@@ -247,9 +257,13 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size
   const PairLaws* laws = list.laws.data();
   ContactEffects* effects = list.effects.data();
   PairRecords* records = list.records.data();
+  const CellShifts shifts(system.cell);
+  const PairImages* images = list.images.used ? list.images.data() : nullptr;
+  const auto images_at = [&](std::size_t g) { return images == nullptr ? nullptr : images + g; };
   for (std::size_t first = 0; first < count; first += groups_at_once) {
     const std::size_t here = std::min(groups_at_once, count - first);
-    for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
+    for (std::size_t g = 0; g < here; ++g)
+      measure<kind>(bodies, groups[first + g], images_at(first + g), shifts, geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
       respond_discs<Law, kind>(numbers, bodies, geometry[g], groups[first + g],
                                kind.friction ? slips + (first + g) : nullptr, kind.equal ? nullptr : laws + (first + g),
@@ -257,9 +271,11 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size
                                outcome[g]);
     }
     if (first + here <= list.first_outward) {
-      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward, sums);
+      for (std::size_t g = 0; g < here; ++g)
+        give<kind, false>(groups[first + g], images_at(first + g), outcome[g], to, outward, sums);
     } else {
-      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward, sums);
+      for (std::size_t g = 0; g < here; ++g)
+        give<kind, true>(groups[first + g], images_at(first + g), outcome[g], to, outward, sums);
     }
   }
   add(sums, system.bodies.sums[block]);

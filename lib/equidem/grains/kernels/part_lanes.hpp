@@ -6,6 +6,7 @@
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/respond.hpp"
 
 namespace equidem::eight {
 
@@ -55,7 +56,8 @@ struct Standing {
 
 /// \tparam round no ellipses in the list
 template <bool round, class Lanes>
-EQUIDEM_ALWAYS_INLINE Standing<Lanes> standing_of(const PartBody* bodies, const ContactRows& of) {
+EQUIDEM_ALWAYS_INLINE Standing<Lanes> standing_of(const PartBody* bodies, const ContactRows& of,
+                                                  const CellShifts& shifts) {
   Lanes way[lanes_of_pairs];
   Row<Lanes> of_i[lanes_of_pairs], of_j[lanes_of_pairs];
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
@@ -69,6 +71,10 @@ EQUIDEM_ALWAYS_INLINE Standing<Lanes> standing_of(const PartBody* bodies, const 
   s.branch = {way[0], way[1]};
   s.velocity = {way[2], way[3]};
   s.middle = {way[4], way[5]};
+  if (of.images != nullptr) {
+    s.branch = s.branch + shift_of<Lanes>(shifts.places, *of.images);
+    s.velocity = s.velocity + shift_of<Lanes>(shifts.velocities, *of.images);
+  }
   columns_of(of_i, s.spin_i, s.middle_spin_i, s.offset_i.x, s.offset_i.y);
   columns_of(of_j, s.spin_j, s.middle_spin_j, s.offset_j.x, s.offset_j.y);
   if constexpr (!round) {

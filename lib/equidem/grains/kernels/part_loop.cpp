@@ -34,6 +34,7 @@ struct PartLoopNumbers {
   double dt = 0;
   std::int64_t now = 0;  ///< the step that is being made, as ContactGroup::since
   bool record = false;
+  CellShifts shifts;
 };
 
 template <class Lanes>
@@ -232,7 +233,8 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     found.overlap = load<Lanes>(at_walls.overlap);
     found.touch = negative(Lanes{} - found.overlap);
   } else {
-    s = standing_of<kind.between == Between::round_parts, Lanes>(system.contacts.parts.bodies.data(), of);
+    s = standing_of<kind.between == Between::round_parts, Lanes>(system.contacts.parts.bodies.data(), of,
+                                                                 numbers.shifts);
     if constexpr (kind.between == Between::round_parts) {
       found = geometry_of_round_parts(of, s, used);
     } else if constexpr (kind.enlarged) {
@@ -300,6 +302,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     store(memory.rolling, *of.effects);
   }
   push = {only(at.touch, push.x), only(at.touch, push.y)};
+  if (!walls && of.images != nullptr) add_on_images(push.x, push.y, *of.images, sums);
   if constexpr (walls) {
     Vectors<Lanes> kicks = push, arms = found.arm_i;
     Bits<Lanes> acts = at.touch;
@@ -367,7 +370,8 @@ void CollideParts<Law, kind>::run(GrainSystem& system, NearList& list, std::size
                                                      all<Lanes>(1 / law.tangential_stiffness), system.dt())},
                                        system.dt(),
                                        system.step + (kind.response.verlet ? 0 : 1),
-                                       system.contacts.record};
+                                       system.contacts.record,
+                                       CellShifts(system.cell)};
   LaneSums<Lanes> sums;
   const bool shapes = !system.shapes.parts.empty();
   const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),

@@ -3,7 +3,7 @@
 
 #include <cmath>
 #include <iterator>
-#include <tuple>
+#include <utility>
 
 #include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
@@ -41,9 +41,8 @@ void set_constants(const GrainSystem& system, NearList& list, std::size_t p) {
   const bool at_wall = of.j < 0;
   const ContactConstants constants = constants_of(system, of.i, of.j);
   const GrainBody& bi = system.bodies.constants[of.i];
-  const GrainBody& bj = at_wall ? wall : system.bodies.constants[system.body_of(of.j)];
-  const GrainPart i = system.part(of.i, of.part_i),
-                  j = at_wall ? no_part : system.part(system.body_of(of.j), of.part_j);
+  const GrainBody& bj = at_wall ? wall : system.bodies.constants[of.j];
+  const GrainPart i = system.part(of.i, of.part_i), j = at_wall ? no_part : system.part(of.j, of.part_j);
   ContactGroup& group = list.groups[g];
   group.reach[k] = i.a + j.a;
   group.dashpot[k] = constants.dashpot() * dt;
@@ -85,13 +84,35 @@ void set_normal(PairRecords& records, std::size_t k, Vec2 normal) {
   records.normal_y[k] = normal.y;
 }
 
+/// Call visit(number of the state, number of the list) for all that a contact carries from step to step.
+template <class List, class State, class Visit>
+void each_number(List& list, std::size_t p, State& state, const Visit& visit) {
+  const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+  visit(state.impulse, list.groups[g].impulse[k]);
+  if (list.slips.used) {
+    visit(state.stretch, list.slips[g].stretch[k]);
+    visit(state.tangential_impulse, list.slips[g].impulse[k]);
+  }
+  if (list.records.used) {
+    auto& records = list.records[g];
+    visit(state.overlap, records.overlap[k]), visit(state.closing, records.closing[k]);
+    visit(state.normal.x, records.normal_x[k]), visit(state.normal.y, records.normal_y[k]);
+  }
+  if (list.shapes.used) {
+    auto& shapes = list.shapes[g];
+    visit(state.arm_i.x, shapes.arm_i_x[k]), visit(state.arm_i.y, shapes.arm_i_y[k]);
+    visit(state.arm_j.x, shapes.arm_j_x[k]), visit(state.arm_j.y, shapes.arm_j_y[k]);
+  }
+  if (!list.effects.used) return;
+  visit(state.rolling_stretch, list.effects[g].stretch[k]);
+  visit(state.rolling_impulse, list.effects[g].impulse[k]);
+}
+
 /// At the present positions.
 PartGeometry geometry_of(const GrainSystem& system, const NearList& list, std::size_t p) {
   const Partners of = partners_of(system, list, p);
-  if (list.between == Between::discs) {
-    const Vec2 branch = system.position_of(of.j) - system.bodies.motions[of.i].position;
-    return {.overlap = list.groups[p / lanes_of_pairs].reach[p % lanes_of_pairs] - norm(branch)};
-  }
+  if (list.between == Between::discs)
+    return {.overlap = list.groups[p / lanes_of_pairs].reach[p % lanes_of_pairs] - norm(system.branch(of))};
   const Vec2 normal = list.normal(p);
   const bool touching = list.touching(p);
   if (of.j >= 0) return geometry_of_parts(system, of, touching, normal);
@@ -112,17 +133,17 @@ StoredEnergy stored_energy(const GrainSystem& system, const NearList& list, std:
   const ContactEffects& effects = list.effects[g];
   const Partners of = partners_of(system, list, p);
   const GrainMotion& i = system.bodies.motions[of.i];
+  GrainMotion j;
+  if (of.j < 0) {
+    j.velocity = system.walls.places[~of.j].passed_velocity;
+  } else {
+    j = system.bodies.motions[of.j];
+  }
   double depth = found.overlap;
   if (list.between == Between::discs) {
-    const Vec2 of_j = system.position_of(of.j) - system.lag() * system.bodies.motions[system.body_of(of.j)].velocity;
-    depth = list.groups[g].reach[k] - norm(of_j - (i.position - system.lag() * i.velocity));
+    const Vec2 branch = j.position - system.lag() * j.velocity - (i.position - system.lag() * i.velocity);
+    depth = list.groups[g].reach[k] - norm(branch + system.cell.now.shift(of.image()));
   } else {
-    GrainMotion j;
-    if (of.j < 0) {
-      j.velocity = system.walls.places[~of.j].passed_velocity;
-    } else {
-      j = system.bodies.motions[system.body_of(of.j)];
-    }
     const Vec2 n = found.normal;
     depth += system.lag() * (dot(j.velocity - i.velocity, n) + j.spin * cross(found.arm_j, n) -
                              i.spin * (of.j < 0 ? found.across_i : cross(found.arm_i, n)));
@@ -186,19 +207,21 @@ NewList::NewList(const GrainSystem& system, NearList& list, std::size_t block)
       old_(list.emptied()),
       end_(static_cast<std::int32_t>(system.bodies.blocks.end(block))) {}
 
-std::size_t NewList::add(std::int32_t i, std::int32_t j) {
+std::size_t NewList::add(const PairKey& pair) {
   const std::size_t p = list_.count++, k = p % lanes_of_pairs;
   if (k == 0) {
     list_.add_group();
     // unused lanes have bodies of this block, to which they give nothing
-    std::ranges::fill(list_.groups.back().i, i);
-    std::ranges::fill(list_.groups.back().j, i);
+    std::ranges::fill(list_.groups.back().i, pair.i);
+    std::ranges::fill(list_.groups.back().j, pair.i);
     std::ranges::fill(list_.groups.back().since, ContactGroup::unused);
   }
   ContactGroup& group = list_.groups.back();
-  group.i[k] = i;
+  const std::int32_t j = pair.j.body;
+  group.i[k] = pair.i;
   group.j[k] = j;
   group.since[k] = ContactGroup::apart;
+  if (list_.images.used) list_.images.back().a[k] = pair.j.a, list_.images.back().b[k] = pair.j.b;
   if (list_.between == Between::walls) return p;
   const std::int32_t receiver = list_.between == Between::discs ? j : system_.shapes.body_of_part[j];
   if (receiver >= end_) {
@@ -208,26 +231,28 @@ std::size_t NewList::add(std::int32_t i, std::int32_t j) {
   return p;
 }
 
-std::size_t NewList::add(std::int32_t i, std::int32_t j, Vec2 apart) {
-  const std::size_t p = add(i, j);
+std::size_t NewList::add(const PairKey& pair, Vec2 apart) {
+  const std::size_t p = add(pair);
   set_constants(system_, list_, p);
   if (list_.shapes.used) set_normal(list_.records.back(), p % lanes_of_pairs, apart);
   return p;
 }
 
-void NewList::leave(std::int32_t i, std::int32_t j, bool near, Vec2 apart) {
+void NewList::leave(const PairKey& pair, bool near, Vec2 apart) {
   if (near && listed_) keep();
-  if (near && !listed_) add(i, j, apart);
+  if (near && !listed_) add(pair, apart);
   if (listed_) ++at_;
 }
 
 Partners partners_of(const GrainSystem& system, const NearList& list, std::size_t p) {
-  const std::int32_t i = list.first(p), j = list.second(p);
+  const auto [i, image] = list.pair(p);
+  const auto [j, b, a] = image;
   const Shapes& shapes = system.shapes;
   if (list.between == Between::walls)
     return shapes.parts.empty() ? Partners{i, ~j} : Partners{shapes.body_of_part[i], ~j, i};
-  if (list.between != Between::discs) return {shapes.body_of_part[i], shapes.body_of_part[j], i, j};
-  return shapes.parts.empty() ? Partners{i, j} : Partners{i, j, shapes.first_part[i], shapes.first_part[j]};
+  if (list.between != Between::discs) return {shapes.body_of_part[i], shapes.body_of_part[j], i, j, a, b};
+  return shapes.parts.empty() ? Partners{i, j, 0, 0, a, b}
+                              : Partners{i, j, shapes.first_part[i], shapes.first_part[j], a, b};
 }
 
 std::optional<PairLaw> common_law(const GrainSystem& system) {
@@ -262,6 +287,7 @@ void prepare_lists(GrainSystem& system) {
       list.laws.used = !discs || !contacts.law;
       list.records.used = list.shapes.used = !discs;
       list.effects.used = system.has_effects();
+      list.images.used = system.cell.active && between != Between::walls;
     }
   };
   const auto is_disc = [](const Grain& grain) { return grain.shape() == GrainShape::disc; };
@@ -270,27 +296,6 @@ void prepare_lists(GrainSystem& system) {
   if (!system.shapes.parts.empty()) others = {Between::round_parts, Between::ellipses};
   if (!system.scene.walls.empty()) others.push_back(Between::walls);
   for (const Between between : others) prepare(between, loop_of_parts(system, between));
-}
-
-void set_state(const GrainSystem& system, NearList& list, std::size_t p, const ContactState& contact) {
-  const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-  list.since(p) = system.step + 1 - contact.steps;
-  list.groups[g].impulse[k] = contact.impulse;
-  list.records[g].overlap[k] = contact.overlap;
-  list.records[g].closing[k] = contact.closing;
-  set_normal(list.records[g], k, contact.normal);
-  if (list.slips.used) list.slips[g].stretch[k] = contact.stretch;
-  if (list.slips.used) list.slips[g].impulse[k] = contact.tangential_impulse;
-  if (list.effects.used) list.effects[g].set_state(k, contact.rolling_stretch, contact.rolling_impulse);
-  if (!list.shapes.used) return;
-  // of discs it is not saved
-  const Vec2 arm_i =
-      system.shapes.parts.empty() ? system.bodies.constants[contact.i].radius * contact.normal : contact.arm_i;
-  PartShapes& shapes = list.shapes[g];
-  shapes.arm_i_x[k] = arm_i.x;
-  shapes.arm_i_y[k] = arm_i.y;
-  shapes.arm_j_x[k] = contact.arm_j.x;
-  shapes.arm_j_y[k] = contact.arm_j.y;
 }
 
 void touch_contacts(GrainSystem& system) {
@@ -313,12 +318,12 @@ void take_contacts(GrainSystem& system, std::vector<ContactState> contacts) {
     if (are_discs(system, contact.i, contact.j)) return Between::discs;
     return between_parts(system, contact.part_i, contact.part_j);
   };
-  const auto numbers_of = [&](const ContactState& contact) {
+  const auto place_of = [&](const ContactState& contact) {
     const bool parts = shapes && list_of(contact) != Between::discs;
     const std::int32_t j = contact.j < 0 ? ~contact.j : parts ? contact.part_j : contact.j;
-    return std::tuple(list_of(contact), parts ? contact.part_i : contact.i, j);
+    return std::pair(list_of(contact), PairKey{parts ? contact.part_i : contact.i, {j, contact.b, contact.a}});
   };
-  std::ranges::sort(contacts, {}, numbers_of);
+  std::ranges::sort(contacts, {}, place_of);
   auto next = contacts.begin();
   each_list(system.contacts, [&](NearList& list) {
     list.count = 0;
@@ -329,49 +334,30 @@ void take_contacts(GrainSystem& system, std::vector<ContactState> contacts) {
       return next != contacts.end() && list_of(*next) == list.between &&
              system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == block;
     };
-    for (; is_here(); ++next) {
-      const auto [between, i, j] = numbers_of(*next);
-      set_state(system, list, taken.add(i, j, {}), *next);
-    }
+    for (; is_here(); ++next) set_state(system, list, taken.add(place_of(*next).second, {}), *next);
   });
 }
 
 ContactState state_of(const GrainSystem& system, const NearList& list, std::size_t p) {
-  const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
   ContactState state;
   static_cast<Partners&>(state) = partners_of(system, list, p);
-  const ContactGroup& group = list.groups[g];
-  state.steps = system.step + 1 - group.since[k];
-  state.impulse = group.impulse[k];
-  if (list.slips.used) state.stretch = list.slips[g].stretch[k];
-  if (list.slips.used) state.tangential_impulse = list.slips[g].impulse[k];
-  if (list.effects.used) state.set_effects(list.effects[g], k);
-  if (list.records.used) {
-    state.overlap = list.records[g].overlap[k];
-    state.closing = list.records[g].closing[k];
-    state.normal = list.normal(p);
-  }
-  if (list.shapes.used) {
-    const PartShapes& shapes = list.shapes[g];
-    state.arm_i = {shapes.arm_i_x[k], shapes.arm_i_y[k]};
-    state.arm_j = {shapes.arm_j_x[k], shapes.arm_j_y[k]};
-  } else {
-    const double distance = group.reach[k] - state.overlap;
-    const double lever = system.bodies.constants[state.i].radius / group.reach[k] * distance;
-    state.arm_i = lever * state.normal;
-    state.arm_j = (lever - distance) * state.normal;
-  }
-  resolve_image(system, state);
+  const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+  state.steps = system.step + 1 - list.groups[g].since[k];
+  each_number(list, p, state, [](double& of_state, double listed) { of_state = listed; });
+  if (list.effects.used) state.lever = list.effects[g].lever[k];
+  if (list.between != Between::discs) return state;
+  const double sum = list.groups[g].reach[k], distance = sum - state.overlap;
+  const double lever = system.bodies.constants[state.i].radius / sum * distance;
+  state.arm_i = lever * state.normal;
+  state.arm_j = (lever - distance) * state.normal;
   return state;
 }
 
-void resolve_image(const GrainSystem& system, ContactState& state) {
-  if (!system.is_image(state.j)) return;
-  const PeriodicImage& image = system.image(state.j);
-  if (!system.shapes.parts.empty()) state.part_j = system.own_part(state.part_j);
-  state.j = image.body;
-  state.a = image.a;
-  state.b = image.b;
+void set_state(const GrainSystem& system, NearList& list, std::size_t p, ContactState contact) {
+  // of discs it is not saved
+  if (system.shapes.parts.empty()) contact.arm_i = system.bodies.constants[contact.i].radius * contact.normal;
+  list.since(p) = system.step + 1 - contact.steps;
+  each_number(list, p, contact, [](double of_state, double& listed) { listed = of_state; });
 }
 
 StoredEnergy stored_energy(const GrainSystem& system) {

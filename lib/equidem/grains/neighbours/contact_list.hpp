@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/contacts/contact_effects.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/motion/lane_vector.hpp"
@@ -28,7 +29,7 @@ constexpr std::size_t lanes_of_pairs = 8;
 using PairLanes = double[lanes_of_pairs];
 
 /// Eight pairs i < j of bodies, or of parts, where not both bodies are discs; or parts i, in scenes of discs bodies, at
-/// walls j. A body, or a part of one, may be an image (periodic_motion.hpp).
+/// walls j.
 struct alignas(64) ContactGroup {
   static constexpr std::int64_t apart = -1, unused = -2;
   std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
@@ -76,6 +77,11 @@ struct alignas(64) PartShapes {
   PairLanes arm_i_x, arm_i_y, arm_j_x, arm_j_y;
 };
 
+/// Periodic cells: numbers of periods along x and along y to the image of j that i meets.
+struct alignas(64) PairImages {
+  PairLanes a, b;
+};
+
 /// Eight contacts of one list.
 struct ContactRows {
   ContactGroup& group;
@@ -83,7 +89,8 @@ struct ContactRows {
   PairLaws& laws;
   PairRecords& records;
   PartShapes& shapes;
-  ContactEffects* effects;  ///< null: there are none
+  ContactEffects* effects;   ///< null: there are none
+  const PairImages* images;  ///< null: without a cell
 };
 
 /// A column beside the groups of a list; empty where the list has none.
@@ -105,7 +112,15 @@ void copy_lane(const Rows& from, std::size_t from_lane, Rows& to, std::size_t to
 /// What the contacts of a list are between.
 enum class Between { discs, round_parts, ellipses, walls };
 
-/// The contacts of a block of bodies that touch or nearly touch, ordered by (i, j).
+/// A pair in the order of lists: i and an image of j, as bodies or parts; or a wall j.
+struct PairKey {
+  std::int32_t i = 0;
+  PeriodicImage j;
+  auto operator<=>(const PairKey&) const = default;
+};
+
+/// The contacts of a block of bodies that touch or nearly touch, ordered as PairKey. Bodies that are taken back into a
+/// cell change the images of all pairs of two bodies by as much: the order stays.
 struct NearList {
   Between between = Between::discs;
   LaneVector<ContactGroup> groups;
@@ -114,12 +129,20 @@ struct NearList {
   Column<PairRecords> records;  ///< discs: after a recorded step
   Column<PartShapes> shapes;    ///< of parts and walls
   Column<ContactEffects> effects;
+  Column<PairImages> images;  ///< of pairs in a periodic cell
   std::size_t count = 0;
   OutwardImpulses outward;
   std::size_t first_outward = 0;  ///< first group with a body of a later block
 
   [[nodiscard]] std::int32_t first(std::size_t p) const { return groups[p / lanes_of_pairs].i[p % lanes_of_pairs]; }
   [[nodiscard]] std::int32_t second(std::size_t p) const { return groups[p / lanes_of_pairs].j[p % lanes_of_pairs]; }
+  [[nodiscard]] PairKey pair(std::size_t p) const {
+    PairKey pair{first(p), {second(p)}};
+    if (!images.used) return pair;
+    pair.j.a = static_cast<std::int32_t>(images[p / lanes_of_pairs].a[p % lanes_of_pairs]);
+    pair.j.b = static_cast<std::int32_t>(images[p / lanes_of_pairs].b[p % lanes_of_pairs]);
+    return pair;
+  }
   [[nodiscard]] std::int64_t& since(std::size_t p) { return groups[p / lanes_of_pairs].since[p % lanes_of_pairs]; }
   [[nodiscard]] bool touching(std::size_t p) const {
     return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > ContactGroup::apart;
@@ -130,14 +153,21 @@ struct NearList {
   }
   /// Rows of a list of parts or of walls.
   [[nodiscard]] ContactRows rows(std::size_t g) {
-    return {groups[g], slips[g], laws[g], records[g], shapes[g], effects.used ? &effects[g] : nullptr};
+    return {groups[g],
+            slips[g],
+            laws[g],
+            records[g],
+            shapes[g],
+            effects.used ? &effects[g] : nullptr,
+            images.used ? &images[g] : nullptr};
   }
   [[nodiscard]] std::size_t bytes() const;
 
   /// Call work(column...) with each column of some lists.
   template <class Work, class... Lists>
   static void each_column(const Work& work, Lists&... lists) {
-    work(lists.slips...), work(lists.laws...), work(lists.records...), work(lists.shapes...), work(lists.effects...);
+    work(lists.slips...), work(lists.laws...), work(lists.records...), work(lists.shapes...), work(lists.effects...),
+        work(lists.images...);
   }
   /// Take the list out, and leave an empty one with room for as many contacts.
   NearList emptied();
@@ -165,17 +195,16 @@ class NewList {
   NewList(const GrainSystem& system, NearList& list, std::size_t block);
 
   /// Contacts stay until the loop has seen them end.
-  void keep_contacts_before(std::int32_t i, std::int32_t j) {
-    for (; at_ < old_.count && std::pair(old_.first(at_), old_.second(at_)) < std::pair(i, j); ++at_) {
+  void keep_contacts_before(const PairKey& pair) {
+    for (; at_ < old_.count && old_.pair(at_) < pair; ++at_)
       if (old_.touching(at_)) keep();
-    }
   }
   /// Keep the contacts that were not found again.
-  void keep_others() { keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0); }
+  void keep_others() { keep_contacts_before({std::numeric_limits<std::int32_t>::max(), {}}); }
   /// Advance to a pair; keep it if it is in contact. \return whether it is
-  bool keep_contact(std::int32_t i, std::int32_t j) {
-    keep_contacts_before(i, j);
-    listed_ = at_ < old_.count && old_.first(at_) == i && old_.second(at_) == j;
+  bool keep_contact(const PairKey& pair) {
+    keep_contacts_before(pair);
+    listed_ = at_ < old_.count && old_.pair(at_) == pair;
     if (!listed_ || !old_.touching(at_)) return false;
     keep();
     ++at_;
@@ -185,16 +214,13 @@ class NewList {
   [[nodiscard]] Vec2 normal_before() const { return listed_ ? old_.normal(at_) : Vec2{}; }
   /// For this pair, if it is apart: keep it where it is near, and list it where it was not.
   /// \param apart a direction along which it is, or {}
-  void leave(std::int32_t i, std::int32_t j, bool near, Vec2 apart = {});
+  void leave(const PairKey& pair, bool near, Vec2 apart = {});
   /// A new contact, which is apart, with its constants. \return its place
-  std::size_t add(std::int32_t i, std::int32_t j, Vec2 apart);
+  std::size_t add(const PairKey& pair, Vec2 apart);
 
  private:
-  std::size_t add(std::int32_t i, std::int32_t j);
-  void keep() {
-    const std::size_t p = add(old_.first(at_), old_.second(at_));
-    list_.copy(old_, at_, p);
-  }
+  std::size_t add(const PairKey& pair);
+  void keep() { list_.copy(old_, at_, add(old_.pair(at_))); }
 
   const GrainSystem& system_;
   NearList& list_;
@@ -208,6 +234,9 @@ class NewList {
 struct Partners {
   std::int32_t i = 0, j = 0;            ///< bodies, or a body and a wall ~j
   std::int32_t part_i = 0, part_j = 0;  ///< indices in Shapes::parts; 0: of a wall, or in scenes of discs
+  std::int32_t a = 0, b = 0;            ///< periods to the image of j that i meets
+
+  [[nodiscard]] PeriodicImage image() const { return {j, b, a}; }
 };
 Partners partners_of(const GrainSystem& system, const NearList& list, std::size_t p);
 
@@ -230,16 +259,14 @@ void prepare_lists(GrainSystem& system);
 /// Mark contacts that overlap as touching.
 void touch_contacts(GrainSystem& system);
 
-/// Replace the contacts of all lists; j may be an image.
+/// Replace the contacts of all lists.
 void take_contacts(GrainSystem& system, std::vector<ContactState> contacts);
 
 /// Set the state of a contact.
-void set_state(const GrainSystem& system, NearList& list, std::size_t p, const ContactState& contact);
+void set_state(const GrainSystem& system, NearList& list, std::size_t p, ContactState contact);
 
 /// The state of a contact.
 ContactState state_of(const GrainSystem& system, const NearList& list, std::size_t p);
-/// In the state of a contact with an image: set the body, the part and the periods in its place.
-void resolve_image(const GrainSystem& system, ContactState& state);
 
 /// Energies that contacts store at the present positions, that of cohesion at the time of the velocities, J.
 struct StoredEnergy {

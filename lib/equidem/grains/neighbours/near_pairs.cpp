@@ -23,13 +23,11 @@ double margin_of(const GrainSystem& system, double size, double reach) {
   return std::min(wanted, system.contacts.skin.margin);
 }
 
-/// Whether a body of a periodic cell is bonded to another one, or to that image of it.
-bool is_bonded_image(const GrainSystem& system, std::int32_t i, std::int32_t partner) {
-  const std::int32_t j = system.body_of(partner);
-  const auto bond = place_of_bond(system.bonds.tied, i, j);
-  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j || bond->broken) return false;
-  const PeriodicImage image = system.is_image(partner) ? system.image(partner) : PeriodicImage{};
-  return bond->image.a == image.a && bond->image.b == image.b;
+/// Whether a body of a periodic cell is bonded to that image of another one.
+bool is_bonded_image(const GrainSystem& system, std::int32_t i, const PeriodicImage& j) {
+  const auto bond = place_of_bond(system.bonds.tied, i, j.body);
+  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j.body || bond->broken) return false;
+  return bond->image.a == j.a && bond->image.b == j.b;
 }
 
 void find_pairs_of_block(GrainSystem& system, std::size_t b) {
@@ -41,19 +39,16 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
     const Vec2 centre = system.bodies.motions[i].position;
     const double own = system.bodies.constants[i].radius + system.contacts.pairs.skin.margin + system.range;
+    const auto first = static_cast<std::int32_t>(i);
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const std::int32_t partner = list.partner[p];
-      if (system.cell.active ? is_bonded_image(system, static_cast<std::int32_t>(i), partner)
-                             : are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner))
+      const PeriodicImage j = system.contacts.neighbour(p);
+      if (system.cell.active ? is_bonded_image(system, first, j)
+                             : are_tied(system.bonds.tied, next_bond, first, j.body))
         continue;
-      if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
-      const std::int32_t other = system.body_of(partner);
-      if (other != partner && other <= static_cast<std::int32_t>(i)) continue;  // listed with the other one, or itself
-      const Vec2 branch = system.position_of(partner) - centre;
-      const double far = own + system.bodies.constants[other].radius;
-      const bool is_near = dot(branch, branch) <= far * far;
-      const auto first = static_cast<std::int32_t>(i);
-      if (!pairs.keep_contact(first, partner)) pairs.leave(first, partner, is_near);
+      if (shapes && !are_discs(system, first, j.body)) continue;
+      const Vec2 branch = system.bodies.motions[j.body].position - centre + system.cell.now.shift(j);
+      const double far = own + system.bodies.constants[j.body].radius;
+      if (!pairs.keep_contact({first, j})) pairs.leave({first, j}, dot(branch, branch) <= far * far);
     }
   }
   pairs.keep_others();
@@ -89,11 +84,12 @@ Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
 
 /// Gap of two parts, or a sufficient lower bound of it; negative: overlap.
 /// \param[in,out] apart a direction along which they were apart, or {}
-double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double enough, Vec2& apart) {
-  const GrainPart &part_i = system.shapes.parts[p], &part_j = system.shapes.parts[q];
-  const auto i = static_cast<std::size_t>(system.shapes.body_of_part[p]);
-  const auto j = static_cast<std::size_t>(system.shapes.body_of_part[q]);
-  const Vec2 branch = system.position_of(system.shapes.body_of_part[q]) - system.bodies.motions[i].position +
+double gap_of(const GrainSystem& system, const PairKey& pair, double enough, Vec2& apart) {
+  const GrainPart &part_i = system.shapes.parts[pair.i], &part_j = system.shapes.parts[pair.j.body];
+  const auto i = static_cast<std::size_t>(system.shapes.body_of_part[pair.i]);
+  const auto j = static_cast<std::size_t>(system.shapes.body_of_part[pair.j.body]);
+  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
+                      system.cell.now.shift(pair.j) +
                       (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
   if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
   const Ellipse of_i{part_i.a, part_i.b, system.shapes.axes[i]}, of_j{part_j.a, part_j.b, system.shapes.axes[j]};
@@ -118,9 +114,7 @@ void find_met_parts(GrainSystem& system) {
     for (std::size_t p = 0; p < list.count && list.between != Between::discs; ++p) {
       const Partners of = partners_of(system, list, p);
       met[of.part_i] = 1;
-      if (of.j < 0) continue;
-      met[of.part_j] = 1;
-      met[system.own_part(of.part_j)] = 1;
+      if (of.j >= 0) met[of.part_j] = 1;
     }
   });
 }
@@ -135,19 +129,17 @@ void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<
     const bool disc = are_discs(system, body, body);
     for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
       for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
-        const std::int32_t partner = neighbours.partner[n];
-        if (disc && are_discs(system, body, partner)) continue;
-        const std::int32_t other = system.body_of(partner);
-        if (other != partner && other <= body) continue;  // listed with the other one, or itself
-        const auto j = static_cast<std::size_t>(partner);
-        for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
-          NearParts::Close pair{p, q, 0, {}};
-          pair.clear = gap_of(system, p, q, farthest, pair.apart);
+        const PeriodicImage j = system.contacts.neighbour(n);
+        if (disc && are_discs(system, body, j.body)) continue;
+        for (std::int32_t q = system.shapes.first_part[j.body]; q < system.shapes.first_part[j.body + 1]; ++q) {
+          NearParts::Close pair{{p, {q, j.b, j.a}}, 0, {}};
+          pair.clear = gap_of(system, pair.pair, farthest, pair.apart);
           if (pair.clear <= farthest) close.push_back(pair);
         }
       }
     }
   }
+  if (system.cell.active) std::ranges::sort(close, {}, &NearParts::Close::pair);
 }
 
 /// Those of the close parts of a block that are nearer than the margin.
@@ -158,12 +150,12 @@ void find_nearest_parts(GrainSystem& system, std::size_t b) {
   NewList ellipses(system, system.contacts.of(Between::ellipses).blocks[b], b);
   for (NearParts::Close& pair : near.close[b]) {
     if (pair.clear - 2 * near.travelled > farthest) continue;
-    NewList& list = between_parts(system, pair.i, pair.j) == Between::ellipses ? ellipses : round;
-    if (list.keep_contact(pair.i, pair.j)) continue;
+    NewList& list = between_parts(system, pair.pair.i, pair.pair.j.body) == Between::ellipses ? ellipses : round;
+    if (list.keep_contact(pair.pair)) continue;
     if (const Vec2 apart = list.normal_before(); apart != Vec2{}) pair.apart = apart;
-    const double gap = gap_of(system, pair.i, pair.j, farthest, pair.apart);
+    const double gap = gap_of(system, pair.pair, farthest, pair.apart);
     pair.clear = gap + 2 * near.travelled;
-    list.leave(pair.i, pair.j, gap <= farthest, pair.apart);
+    list.leave(pair.pair, gap <= farthest, pair.apart);
   }
   round.keep_others();
   ellipses.keep_others();
@@ -191,8 +183,8 @@ bool is_near_wall(const GrainSystem& system, std::size_t body, const GrainPart& 
 void find_walls_of_block(GrainSystem& system, std::size_t block) {
   NewList walls(system, system.contacts.of(Between::walls).blocks[block], block);
   const auto see = [&](std::int32_t i, std::size_t w) {
-    const auto j = static_cast<std::int32_t>(w);
-    if (!walls.keep_contact(i, j)) walls.leave(i, j, true);
+    const PairKey pair{i, {static_cast<std::int32_t>(w)}};
+    if (!walls.keep_contact(pair)) walls.leave(pair, true);
   };
   const std::size_t count = system.scene.walls.size();
   const double farthest = system.contacts.skin.margin + system.range;
@@ -253,10 +245,7 @@ double longest_turn(const GrainSystem& system) {
 }
 
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
-  const auto is_disc = [&](std::int32_t body) {
-    return system.grain(system.body_of(body)).shape() == GrainShape::disc;
-  };
-  return is_disc(i) && is_disc(j);
+  return system.grain(i).shape() == GrainShape::disc && system.grain(j).shape() == GrainShape::disc;
 }
 
 Between between_parts(const GrainSystem& system, std::int32_t p, std::int32_t q) {

@@ -55,12 +55,12 @@ struct NearPairs {
 struct NearParts {
   /// Two parts that may touch while the list of the neighbour finder is valid.
   struct Close {
-    std::int32_t i = 0, j = 0;
+    PairKey pair;
     double clear = 0;  ///< lower bound of the gap plus twice `travelled`, m
     Vec2 apart;        ///< a direction along which they were apart, or {}
   };
 
-  std::vector<std::vector<Close>> close;  ///< of each block, ordered by i, then j
+  std::vector<std::vector<Close>> close;  ///< of each block, ordered by pair
   LaneVector<PartBody> bodies;            ///< one for each part
   std::vector<char> met;                  ///< whether a part is in the lists
   double size = 0;                        ///< smallest GrainPart::size, m
@@ -76,7 +76,7 @@ void place_parts(GrainSystem& system);
 /// Prepare what the loops read of bodies.
 void prepare_bodies(GrainSystem& system);
 
-/// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
+/// Whether both bodies of a pair are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 /// The list of a pair of parts.
 Between between_parts(const GrainSystem& system, std::int32_t p, std::int32_t q);
