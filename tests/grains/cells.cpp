@@ -276,6 +276,19 @@ TEST_CASE("a_cell_cut_elsewhere_has_the_same_forces") {
   }
 }
 
+TEST_CASE("a_servo_deforms_a_cell_of_shapes_alike_wherever_it_is_cut") {
+  GrainScene scene = mixed_cell(NormalLaw::linear_dashpot, 6, 5, 5, 2);
+  scene.cell->servo = CellServo{.stress_xx = Schedule{.value = -5}, .max_rate = 10};
+  GrainScene other = scene;
+  for (Grain& grain : other.grains) grain.position += Vec2{2.7, -1.3};
+  GrainSimulation a(scene, verlet_options(0.001)), b(other, verlet_options(0.001));
+  a.advance(400);
+  b.advance(400);
+  CAPTURE(a.cell()->width, b.cell()->width, a.contacts().size());
+  CHECK(std::abs(a.cell()->width - 6) > 0.01);
+  CHECK(std::abs(a.cell()->width - b.cell()->width) < 1e-9);
+}
+
 TEST_CASE("bodies_slide_down_along_a_cell_on_a_floor_and_keep_their_energy") {
   const Stepping stepping = GENERATE(from_range(force_steppings));
   const bool shapes = GENERATE(false, true);
@@ -653,6 +666,16 @@ TEST_CASE("what_a_cell_does_not_carry_is_refused_by_name") {
   moving.cell->rate_xy = {.value = 1};
   check_refused([&] { return GrainSimulation(moving, options_of(NormalLaw::linear_dashpot, 0.01)); },
                 {"semi_implicit_euler", "velocity_verlet"});
+}
+
+TEST_CASE("a_saved_contact_with_an_image_that_is_far_away_is_refused") {
+  GrainSimulation simulation(busy_cell(NormalLaw::linear_dashpot, 6, 5, 5), verlet_options());
+  simulation.advance(100);
+  SavedState damaged = simulation.save();
+  constexpr std::size_t periods_along_x = 13;
+  REQUIRE(damaged["contacts"].size() > periods_along_x);
+  damaged["contacts"][periods_along_x] += 1;
+  CHECK_THROWS_WITH(simulation.restore(damaged), Catch::Contains("an image that is far away"));
 }
 
 TEST_CASE("a_cell_that_becomes_too_thin_is_refused") {

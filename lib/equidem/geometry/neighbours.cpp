@@ -56,6 +56,38 @@ std::uint64_t whole_part(double value, std::uint64_t most) {
   return value < static_cast<double>(most) ? static_cast<std::uint64_t>(value) : most;
 }
 
+/// All images that come near a body or could: those nearer to the box of all centres than their radius, the largest
+/// radius and the margin together. Ascending.
+std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin) {
+  std::vector<PeriodicImage> images;
+  if (circles.empty()) return images;
+  Vec2 low = circles[0].centre, high = low;
+  double largest = 0;
+  for (const Circle& circle : circles) {
+    low = {std::min(low.x, circle.centre.x), std::min(low.y, circle.centre.y)};
+    high = {std::max(high.x, circle.centre.x), std::max(high.y, circle.centre.y)};
+    largest = std::max(largest, circle.radius);
+  }
+  // a hundred roundings more than nothing, so that a body on the edge of the box has its image
+  const double more = largest + margin + 1e-13 * (norm(low) + norm(high));
+  const auto first = [](double from, double period) { return static_cast<std::int32_t>(std::ceil(from / period)); };
+  const auto last = [](double to, double period) { return static_cast<std::int32_t>(std::floor(to / period)); };
+  for (std::size_t k = 0; k < circles.size(); ++k) {
+    const auto [centre, radius] = circles[k];
+    const double reach = radius + more;
+    const bool rows = periods.b.y > 0;
+    const std::int32_t lowest = rows ? first(low.y - reach - centre.y, periods.b.y) : 0;
+    const std::int32_t highest = rows ? last(high.y + reach - centre.y, periods.b.y) : 0;
+    for (std::int32_t b = lowest; b <= highest; ++b) {
+      const double x = centre.x + b * periods.b.x;
+      const std::int32_t right = last(high.x + reach - x, periods.a.x);
+      for (std::int32_t a = first(low.x - reach - x, periods.a.x); a <= right; ++a)
+        if (a != 0 || b != 0) images.push_back({static_cast<std::int32_t>(k), b, a});
+    }
+  }
+  return images;
+}
+
 }  // namespace
 
 struct NeighbourFinder::Memory {
@@ -335,36 +367,6 @@ PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position) {
   const double x = position.x + image.b * periods.b.x - centre.x;
   image.a = static_cast<std::int32_t>(-std::floor(x / periods.a.x + 0.5));
   return image;
-}
-
-std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin) {
-  std::vector<PeriodicImage> images;
-  if (circles.empty()) return images;
-  Vec2 low = circles[0].centre, high = low;
-  double largest = 0;
-  for (const Circle& circle : circles) {
-    low = {std::min(low.x, circle.centre.x), std::min(low.y, circle.centre.y)};
-    high = {std::max(high.x, circle.centre.x), std::max(high.y, circle.centre.y)};
-    largest = std::max(largest, circle.radius);
-  }
-  // a hundred roundings more than nothing, so that a body on the edge of the box has its image
-  const double more = largest + margin + 1e-13 * (norm(low) + norm(high));
-  const auto first = [](double from, double period) { return static_cast<std::int32_t>(std::ceil(from / period)); };
-  const auto last = [](double to, double period) { return static_cast<std::int32_t>(std::floor(to / period)); };
-  for (std::size_t k = 0; k < circles.size(); ++k) {
-    const auto [centre, radius] = circles[k];
-    const double reach = radius + more;
-    const bool rows = periods.b.y > 0;
-    const std::int32_t lowest = rows ? first(low.y - reach - centre.y, periods.b.y) : 0;
-    const std::int32_t highest = rows ? last(high.y + reach - centre.y, periods.b.y) : 0;
-    for (std::int32_t b = lowest; b <= highest; ++b) {
-      const double x = centre.x + b * periods.b.x;
-      const std::int32_t right = last(high.x + reach - x, periods.a.x);
-      for (std::int32_t a = first(low.x - reach - x, periods.a.x); a <= right; ++a)
-        if (a != 0 || b != 0) images.push_back({static_cast<std::int32_t>(k), b, a});
-    }
-  }
-  return images;
 }
 
 const std::vector<CirclePair>& PairFinder::within(std::span<const Circle> circles,

@@ -75,10 +75,6 @@ struct Periods {
 /// The image of a body in the cell around a centre: body 0, and the periods by which it is moved into the cell.
 PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position);
 
-/// All images that come near a body or could: those nearer to the box of all centres than their radius, the largest
-/// radius and the margin together. Ascending.
-std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin);
-
 /// Circle i and an image of circle j.
 struct CirclePair {
   std::int32_t i = 0;

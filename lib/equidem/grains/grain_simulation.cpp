@@ -20,7 +20,6 @@
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -77,29 +76,26 @@ GrainSimulation::Implementation::Implementation(const GrainScene& scene, const G
   find_dissipations(system);
   find_servos(system);
   place_walls(system);
-  prepare_near_pairs(system);
-  prepare_near_walls(system);
+  prepare_lists(system);
+  prepare_bodies(system);
   if (collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   pack_bonds(system);
-  prepare_near_parts(system);
-  const bool listed_twice =
-      system.shapes.parts.empty() ? system.contacts.near.active : system.contacts.near_parts.active;
-  system.contacts.base_margin = options.margin > 0 ? options.margin : (listed_twice ? 0.6 : 0.2) * smallest_size;
-  system.contacts.margin = std::max(system.contacts.base_margin, 8 * fastest * options.time_step);
+  system.contacts.base_margin =
+      options.margin > 0 ? options.margin : (gives_force(options.law) ? 0.6 : 0.2) * smallest_size;
+  system.contacts.skin.margin = std::max(system.contacts.base_margin, 8 * fastest * options.time_step);
   if (!system.walls.servos.empty()) limit_free_way(system);
   system.walls.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
 }
 
 void GrainSimulation::Implementation::begin() {
   find_candidates(system);
-  touch_near_pairs(system);
-  touch_near_parts(system);
+  touch_contacts(system);
   for (Candidate& candidate : system.contacts.candidates) {
     // bodies that overlap at the start touch
     candidate.touching = geometry_of(system, candidate).overlap > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
-  system.contacts.near.record = true;
+  system.contacts.record = true;
   if (verlet()) {
     find_impulses(system, collide, nullptr);
     system.lost = {};  // there was no drift before the start
@@ -122,13 +118,13 @@ void GrainSimulation::advance(std::int64_t steps) {
     const GrainCounters counters = self.system.counters;
     if (!self.kept || now - self.kept->step >= steps_between_kept_states) self.kept = self.state();
     try {
-      self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept->step >= steps_between_kept_states;
+      self.system.contacts.record = k + 1 == steps || now + 1 - self.kept->step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
       // the failed step has changed contacts: repeat the steps from an earlier state to its start
       self.go_back_to(*self.kept);
       while (self.system.step < now) {
-        self.system.contacts.near.record = self.system.step + 1 == now;
+        self.system.contacts.record = self.system.step + 1 == now;
         self.make_step();
       }
       self.system.counters = counters;
@@ -322,20 +318,10 @@ std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic
 
 EnergyLedger GrainSimulation::Implementation::contact_energies() const {
   EnergyLedger ledger;
-  double &normal = ledger.elastic_normal, &tangential = ledger.elastic_tangential;
-  // a force acts wherever bodies overlap
-  std::tie(normal, tangential) = elastic_of_near_pairs(system);
-  std::tie(ledger.elastic_rolling, ledger.cohesion) = effects_of_near_pairs(system);
-  each_list(system.contacts, [&](const NearParts::List& list) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      const auto [of_normal, of_tangential] = elastic_of(system, list, p);
-      normal += of_normal;
-      tangential += of_tangential;
-      const auto [of_rolling, of_cohesion] = effects_of(system, list, p);
-      ledger.elastic_rolling += of_rolling;
-      ledger.cohesion += of_cohesion;
-    }
-  });
+  const StoredEnergy stored = stored_energy(system);
+  double &normal = ledger.elastic_normal = stored.normal, &tangential = ledger.elastic_tangential = stored.tangential;
+  ledger.elastic_rolling = stored.rolling;
+  ledger.cohesion = stored.cohesion;
   // these laws count the spring from the first step of the contact on
   for (const Candidate& candidate : system.contacts.candidates) {
     tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
@@ -441,15 +427,17 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
 
 double GrainSimulation::bytes_per_body() const {
   const GrainSystem& system = implementation_->system;
+  std::size_t lists = system.contacts.parts.bytes();
+  each_list(system.contacts, [&](const NearList& list) { lists += list.bytes(); });
   const double bytes = static_cast<double>(
-      system.contacts.near.bytes() + system.contacts.near_parts.bytes() + system.contacts.near_walls.bytes() +
+      lists + system.contacts.pairs.bodies.capacity() * sizeof(PairBody) +
       system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
       2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
       (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
       system.contacts.candidates.capacity() * sizeof(Candidate) + system.shapes.parts.capacity() * sizeof(GrainPart) +
       system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
       system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
-      (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
+      (system.contacts.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
       system.bonds.breaks.capacity() * sizeof(BondBreak) + system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.constants.size());
 }

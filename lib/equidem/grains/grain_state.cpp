@@ -10,7 +10,6 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
@@ -87,19 +86,20 @@ namespace {
 /// The lever at a wall is the radius; those of two discs add up to the distance of their centres.
 ContactState state_of(const GrainSystem& system, const Candidate& candidate) {
   const double radius = system.bodies.constants[candidate.i].radius;
-  ContactState state{.i = candidate.i,
-                     .j = candidate.j,
-                     .mode = candidate.mode,
-                     .parted = candidate.parted,
-                     .steps = candidate.steps,
-                     .overlap = candidate.overlap,
-                     .closing = candidate.closing,
-                     .normal = candidate.normal,
-                     .impulse = candidate.impulse,
-                     .moment = candidate.moment,
-                     .tangential_impulse = candidate.tangential_impulse,
-                     .stretch = candidate.stretch,
-                     .arm_i = radius * candidate.normal};
+  ContactState state;
+  state.i = candidate.i;
+  state.j = candidate.j;
+  state.mode = candidate.mode;
+  state.parted = candidate.parted;
+  state.steps = candidate.steps;
+  state.overlap = candidate.overlap;
+  state.closing = candidate.closing;
+  state.normal = candidate.normal;
+  state.impulse = candidate.impulse;
+  state.moment = candidate.moment;
+  state.tangential_impulse = candidate.tangential_impulse;
+  state.stretch = candidate.stretch;
+  state.arm_i = radius * candidate.normal;
   if (candidate.j < 0) return state;
   const double sum = radius + system.bodies.constants[candidate.j].radius;
   const double distance = sum - candidate.overlap, lever = radius / sum * distance;
@@ -126,12 +126,10 @@ void take(const ContactState& state, Candidate& candidate) {
 
 std::vector<ContactState> contact_states(const GrainSystem& system) {
   std::vector<ContactState> states;
-  const auto add_touching = [&](const auto& list) {
+  each_list(system.contacts, [&](const NearList& list) {
     for (std::size_t p = 0; p < list.count; ++p)
       if (list.touching(p)) states.push_back(state_of(system, list, p));
-  };
-  for (const PairBlock& block : system.contacts.near.blocks) add_touching(block);
-  each_list(system.contacts, add_touching);
+  });
   for (const Candidate& candidate : system.contacts.candidates)
     if (candidate.touching) states.push_back(state_of(system, candidate));
   return states;
@@ -250,9 +248,15 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   turn_axes(system);
   system.contacts.candidates.clear();
   system.contacts.exact_pairs.clear();
-  if (system.contacts.near.active) load_pair_bodies(system);
-  list_contacts(system, state.contacts);
-  take_near_walls(system, state.contacts);
+  if (system.contacts.has(Between::discs)) load_pair_bodies(system);
+  const auto is_far = [&](const ContactState& c) {
+    const std::vector<GrainBody>& bodies = system.bodies.constants;
+    return c.j >= 0 && norm(system.branch(c)) > 2 * (bodies[c.i].radius + bodies[c.j].radius) + system.range;
+  };
+  if (system.cell.active && std::ranges::any_of(state.contacts, is_far))
+    bad_input("the state has a contact with an image that is far away", "it is of another scene, or damaged",
+              go_on_with);
+  take_contacts(system, state.contacts);
   find_candidates(system);
   if (!gives_force(system.options.law)) {
     auto candidate = system.contacts.candidates.begin();

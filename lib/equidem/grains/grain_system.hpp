@@ -17,7 +17,6 @@
 #include "equidem/grains/kernels/bond_loop.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
@@ -67,10 +66,7 @@ struct Candidate : ContactConstants {
 };
 
 /// A contact as it is reported, saved and handed on.
-struct ContactState {
-  std::int32_t i = 0, j = 0;            ///< bodies, or a body and a wall ~j
-  std::int32_t part_i = 0, part_j = 0;  ///< indices in Shapes::parts; 0: of a wall, or in scenes of discs
-  std::int32_t a = 0, b = 0;            ///< of the image of j that i meets, as in PeriodicImage
+struct ContactState : Partners {
   int mode = 0;
   bool parted = false;
   std::int64_t steps = 0;
@@ -80,12 +76,6 @@ struct ContactState {
   Vec2 arm_i = {}, arm_j = {};                      ///< from the centres of mass to the contact point, m; {} for a wall
   double rolling_stretch = 0, rolling_impulse = 0;  ///< as in ContactEffects
   double lever = 0;                                 ///< R of rolling, m; not saved
-
-  void set_effects(const ContactEffects& effects, std::size_t lane) {
-    rolling_stretch = effects.stretch[lane];
-    rolling_impulse = effects.impulse[lane];
-    lever = effects.lever[lane];
-  }
 };
 
 /// Displacement and velocity of a wall in the present step.
@@ -128,6 +118,7 @@ struct BlockSums {
   std::vector<WallLoad> on_walls;              ///< empty: none of its bodies is near a wall
   std::int64_t evaluations = 0, contacts = 0;  ///< as in GrainCounters
   double deepest = 0;                          ///< deepest overlap, m
+  ImageImpulses on_images;
 
   [[nodiscard]] ContactSums sums() { return {lost, &on_walls}; }
 };
@@ -168,8 +159,7 @@ struct GrainBodies {
   std::vector<std::int32_t> place_of_grain;  ///< its inverse; -1: absent
 };
 
-/// Ellipses and clumps; all empty in scenes of discs alone. In a periodic cell the images follow as bodies of their own
-/// (periodic_images.hpp).
+/// Ellipses and clumps; all empty in scenes of discs alone.
 struct Shapes {
   std::vector<GrainPart> parts;          ///< parts of body k: first_part[k] .. first_part[k + 1] - 1
   std::vector<std::int32_t> first_part;  ///< an entry more than there are bodies
@@ -191,16 +181,30 @@ struct Walls {
 
 /// Pairs that touch or may touch soon.
 struct ContactList {
-  NearPairs near;
-  NearParts near_parts;
-  NearWalls near_walls;
+  std::array<NearLists, 4> near;  ///< force laws: in the order of Between
+  std::optional<PairLaw> law;     ///< as common_law()
+  bool record = false;            ///< record the present step for contacts()
+  NearPairs pairs;
+  NearParts parts;
   /// Contacts by maps and simultaneous laws, ordered by i, then j (walls last).
   std::vector<Candidate> candidates;
   std::vector<ExactPair> exact_pairs;  ///< simultaneous laws: one for each candidate
   NeighbourFinder finder;
-  std::vector<Circle> circles;   ///< bodies, for the finder
-  double margin = 0, moved = 0;  ///< margin of the candidates; upper bound of the motion since they were found, m
-  double base_margin = 0;        ///< margin for slow bodies, m
+  const NeighbourList* neighbours = nullptr;  ///< list of the finder
+  PairFinder finder_in_cell;
+  NeighbourList in_cell;              ///< `begin` of `images` instead of partners
+  std::vector<PeriodicImage> images;  ///< partners of all bodies, ascending within each
+  std::vector<Circle> circles;        ///< bodies, for the finder
+  Skin skin;                          ///< of the list of the finder
+  double base_margin = 0;             ///< margin for slow bodies, m
+
+  [[nodiscard]] NearLists& of(Between between) { return near[static_cast<std::size_t>(between)]; }
+  [[nodiscard]] const NearLists& of(Between between) const { return near[static_cast<std::size_t>(between)]; }
+  [[nodiscard]] bool has(Between between) const { return of(between).active(); }
+  /// The p-th partner in `neighbours`.
+  [[nodiscard]] PeriodicImage neighbour(std::int64_t p) const {
+    return images.empty() ? PeriodicImage{neighbours->partner[p]} : images[p];
+  }
 };
 
 struct BondList {
@@ -248,38 +252,19 @@ struct GrainSystem {
   [[nodiscard]] double lag() const { return options.verlet() ? 0 : 0.5 * options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const Grain& grain(std::int32_t body) const { return scene.grains[bodies.grain_of[body]]; }
-  /// Of a body and another one, or an image of it, or a wall ~j.
+  /// A part of a body; in scenes of discs the body.
+  [[nodiscard]] GrainPart part(std::int32_t body, std::int32_t number) const {
+    const double radius = bodies.constants[body].radius;
+    return shapes.parts.empty() ? GrainPart{{}, radius, radius, radius} : shapes.parts[number];
+  }
+  /// Of a body and another one, or a wall ~j.
   [[nodiscard]] const PairProperties& properties(std::int32_t i, std::int32_t j) const {
-    const int other = j >= 0 ? bodies.constants[body_of(j)].kind : scene.walls[~j].kind;
+    const int other = j >= 0 ? bodies.constants[j].kind : scene.walls[~j].kind;
     return scene.between(bodies.constants[i].kind, other);
   }
-  /// The image that a number behind those of all bodies stands for.
-  [[nodiscard]] const PeriodicImage& image(std::int32_t j) const {
-    return cell.images[static_cast<std::size_t>(j) - bodies.constants.size()];
-  }
-  [[nodiscard]] bool is_image(std::int32_t j) const {
-    return j >= 0 && static_cast<std::size_t>(j) >= bodies.constants.size();
-  }
-  /// The body of a partner in a near pair: itself, or that of which it is an image.
-  [[nodiscard]] std::int32_t body_of(std::int32_t j) const { return is_image(j) ? image(j).body : j; }
-  /// The part that a part of an image stands for; itself otherwise.
-  [[nodiscard]] std::int32_t own_part(std::int32_t part) const {
-    const std::int32_t holder = shapes.body_of_part[part];
-    return part + shapes.first_part[body_of(holder)] - shapes.first_part[holder];
-  }
-  /// Whether bodies meet images of others.
-  [[nodiscard]] bool meets_images() const {
-    return cell.active && (contacts.near.active || contacts.near_parts.active);
-  }
-  /// Place of a body or an image at the start of the step.
-  [[nodiscard]] Vec2 position_of(std::int32_t j) const {
-    const Vec2 own = bodies.motions[body_of(j)].position;
-    return is_image(j) ? own + cell.now.shift(image(j)) : own;
-  }
-  /// Likewise of bodies.next.
-  [[nodiscard]] Vec2 next_position_of(std::int32_t j) const {
-    const Vec2 own = bodies.next[body_of(j)].position;
-    return is_image(j) ? own + cell.next.shift(image(j)) : own;
+  /// From the centre of i to that of the image of j at the start of the step.
+  [[nodiscard]] Vec2 branch(const Partners& of) const {
+    return bodies.motions[of.j].position - bodies.motions[of.i].position + cell.now.shift(of.image());
   }
 };
 
@@ -290,7 +275,7 @@ void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vec
 /// Compute LawFacts::dissipation for every pair of kinds.
 void find_dissipations(GrainSystem& system);
 
-/// \param j a body, an image of one, or a wall ~j
+/// \param j a body, or a wall ~j
 ContactConstants constants_of(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
 /// \param j as in constants_of \param stiffness of its contact with i

@@ -82,9 +82,9 @@ WallResistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 d
     sum.dashpot += of.c_n * along * along + of.c_t * across * across;
   };
   const std::int32_t j = ~static_cast<std::int32_t>(wall);
-  for (const NearParts::List& list : system.contacts.near_walls.blocks) {
+  for (const NearList& list : system.contacts.of(Between::walls).blocks) {
     for (std::size_t p = 0; p < list.count; ++p) {
-      if (list.wall(p) != wall || !list.touching(p)) continue;
+      if (static_cast<std::size_t>(list.second(p)) != wall || !list.touching(p)) continue;
       const ContactState contact = state_of(system, list, p);
       add(contact.normal, contact.overlap, constants_of(system, contact.i, j));
     }

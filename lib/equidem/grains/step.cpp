@@ -17,7 +17,6 @@
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -39,7 +38,7 @@ void list_and_guard(GrainSystem& system) {
   refuse_crossings(system);
 }
 
-/// Bodies, walls, axes and images go on to the end of the step. Steer: walls.
+/// Bodies, walls and axes go on to the end of the step. Steer: walls.
 void go_on(GrainSystem& system) {
   if (!system.bodies.in_place) system.bodies.motions.swap(system.bodies.next);
   if (system.cell.deforms) advance_cell(system);
@@ -47,19 +46,18 @@ void go_on(GrainSystem& system) {
   if (!system.walls.servos.empty()) steer_walls(system);
   place_walls(system);
   turn_axes(system);
-  if (system.meets_images()) turn_images(system);
   cover_joints(system);
 }
 
 }  // namespace
 
 void find_impulses(GrainSystem& system, CandidateLoop collide, BlockMove move) {
-  system.cell.bond_sums = {};
+  system.cell.on_images = {};
   if (system.bonds.held > 0) push_springs(system);  // Bonds
   if (system.bonds.breakable && !system.options.verlet() && break_bonds(system) && system.bonds.held > 0)
     push_springs(system);
   const bool at_once = system.bonds.held == 0 && !collide;
-  if (system.contacts.near_parts.active) load_part_bodies(system);
+  if (system.contacts.has(Between::ellipses)) load_part_bodies(system);
   collide_bodies(system, collide, at_once ? move : nullptr);  // Contacts, Gather, Kick of each block, Count
   if (system.bonds.held > 0) add_bond_impulses(system);
   if (at_once || !move) return;

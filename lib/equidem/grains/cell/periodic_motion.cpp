@@ -10,7 +10,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
@@ -53,9 +52,11 @@ double controlled_rate(const CellServo& servo, const Schedule& stress, double ti
   return control.rate;
 }
 
-/// Sum the works and moments of all blocks.
+/// Sum the works and moments of all blocks, and those of impulses on images.
 CellSums summed(const MovingCell& cell) {
-  CellSums all = cell.bond_sums;
+  CellSums all;
+  all.here = cell.on_images.moment(cell.now);
+  all.before = cell.on_images.moment(cell.before);
   for (const CellSums& sums : cell.sums) {
     all.here += sums.here;
     all.before += sums.before;
@@ -71,29 +72,6 @@ double turn_velocity(const Tensor2& gradient, double h, double inverse_mass, Vec
   const double work = (0.5 * dot(turned, turned) - dot(velocity, turned)) / inverse_mass;
   velocity -= turned;
   return work;
-}
-
-/// Sum of impulse times branch over the contacts of a block: that of the impulses on its bodies times their places, and
-/// of those on images times their shifts.
-void add_moments(const GrainSystem& system, std::size_t block, CellSums& sums) {
-  const MovingCell& cell = system.cell;
-  const BodyBlocks& blocks = system.bodies.blocks;
-  for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
-    const Vec2 impulse = system.bodies.impulses[i].impulse;
-    sums.here += outer(impulse, system.bodies.motions[i].position - cell.centre);
-    sums.before += outer(impulse, system.bodies.next[i].position - cell.centre);
-  }
-  const auto add = [&](const OutwardImpulses& outward) {
-    for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
-      if (!system.is_image(outward.bodies[k])) continue;
-      const PeriodicImage& image = system.image(outward.bodies[k]);
-      sums.here += outer(outward.impulses[k].impulse, cell.now.shift(image));
-      sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
-    }
-  };
-  if (system.contacts.near.active) add(system.contacts.near.blocks[block].outward);
-  if (!system.contacts.near_parts.active) return;
-  for (const NearParts::List& list : system.contacts.near_parts.blocks[block].lists) add(list.outward);
 }
 
 /// Sum of force times branch over the contacts, and of m u u over the bodies.
@@ -141,33 +119,27 @@ void set_cell(GrainSystem& system, const GrainSystem* before) {
 }
 
 void measure_resistance(GrainSystem& system) {
-  const NearPairs& near = system.contacts.near;
   Vec2 stiffness, viscosity;
-  for (const PairBlock& block : near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[block.first(p)].position;
-      const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
-      if (!(distance > 0) || (system.cohesion && overlap == 0)) continue;
-      const double stiffness_of_pair = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      ContactResistance of =
-          resistance_along(system.law(), stiffness_of_pair, block.groups[g].dashpot[k] / system.dt(), overlap);
-      if (system.friction) {
-        of.k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        of.c_t = block.slips[g].dashpot[k] / system.dt();
-      }
-      add_resistance(branch, branch / distance, of, stiffness, viscosity);
-    }
-  }
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+  each_list(system.contacts, [&](const NearList& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
-      if (!list.touching(p)) continue;
+      if (!list.touching(p) || list.between == Between::walls) continue;
+      if (list.between == Between::discs) {
+        const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+        const Vec2 branch = system.branch(partners_of(system, list, p));
+        const double distance = norm(branch), overlap = std::max(list.groups[g].reach[k] - distance, 0.0);
+        if (!(distance > 0) || (system.cohesion && overlap == 0)) continue;
+        const PairLaw law = law_of(system, list, p);
+        ContactResistance of =
+            resistance_along(system.law(), law.stiffness, list.groups[g].dashpot[k] / system.dt(), overlap);
+        if (system.friction) of.k_t = law.tangential_stiffness, of.c_t = list.slips[g].dashpot[k] / system.dt();
+        add_resistance(branch, branch / distance, of, stiffness, viscosity);
+        continue;
+      }
       const ContactState contact = state_of(system, list, p);
       if (system.cohesion && !(contact.overlap > 0)) continue;
       const ContactConstants constants = constants_of(system, contact.i, contact.j);
-      add_resistance(system.position_of(contact.j) - system.position_of(contact.i), contact.normal,
-                     resistance_of(system, constants, contact.overlap), stiffness, viscosity);
+      add_resistance(system.branch(contact), contact.normal, resistance_of(system, constants, contact.overlap),
+                     stiffness, viscosity);
     }
   });
   for (const TiedPair& bond : system.bonds.holding()) {
@@ -221,8 +193,8 @@ void drift_in_cell(GrainSystem& system) {
   const Tensor2& gradient = cell.gradient;
   // two bodies that touch come nearer by their own ways and by that of the cell along their branch
   const double stretch = std::sqrt(contraction(gradient, gradient));
-  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.margin + system.range);
-  const bool near = system.contacts.near.active;
+  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.skin.margin + system.range);
+  const bool near = system.contacts.has(Between::discs);
   find_longest_way(system, [&](std::size_t block) {
     CellSums& sums = cell.sums[block] = {};
     double longest = 0;
@@ -243,7 +215,7 @@ void drift_in_cell(GrainSystem& system) {
       if (!near) continue;
       GrainMotion seen = motion;
       seen.velocity += with_cell;
-      system.contacts.near.bodies[i] = pair_body(body, seen, gain, turn);
+      system.contacts.pairs.bodies[i] = pair_body(body, seen, gain, turn);
     }
     return longest;
   });
@@ -260,12 +232,15 @@ void kick_in_cell(GrainSystem& system) {
   const BodyBlocks& blocks = system.bodies.blocks;
   blocks.each([&](std::size_t block) {
     CellSums& sums = cell.sums[block];  // with the work of the drift
-    add_moments(system, block, sums);
     for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
       GrainMotion& motion = system.bodies.motions[i];
       const GrainBody& body = system.bodies.constants[i];
+      const Vec2 impulse = system.bodies.impulses[i].impulse;
+      // impulse times branch, summed over contacts: times the places of bodies, and the shifts of images
+      sums.here += outer(impulse, motion.position - cell.centre);
+      sums.before += outer(impulse, system.bodies.next[i].position - cell.centre);
       sums.work += turn_velocity(cell.gradient, 0.5 * system.dt(), body.inverse_mass, motion.velocity);
-      motion.velocity += 0.5 * body.inverse_mass * system.bodies.impulses[i].impulse;
+      motion.velocity += 0.5 * body.inverse_mass * impulse;
       motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
       sums.flux += (1 / body.inverse_mass) * outer(motion.velocity, motion.velocity);
     }
@@ -310,126 +285,19 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
   return state;
 }
 
-namespace {
-
-/// The shapes of the images behind those of the bodies.
-void list_images_of_shapes(GrainSystem& system) {
-  Shapes& shapes = system.shapes;
-  if (shapes.parts.empty()) return;
-  const std::size_t bodies = system.bodies.constants.size();
-  const auto own_parts = static_cast<std::size_t>(shapes.first_part[bodies]);
-  shapes.first_part.resize(bodies + 1);
-  shapes.parts.resize(own_parts);
-  shapes.body_of_part.resize(own_parts);
-  shapes.axes.resize(bodies + system.cell.images.size());
-  for (std::size_t k = 0; k < system.cell.images.size(); ++k) {
-    const auto body = static_cast<std::size_t>(system.cell.images[k].body);
-    for (auto part = static_cast<std::size_t>(shapes.first_part[body]);
-         part < static_cast<std::size_t>(shapes.first_part[body + 1]); ++part) {
-      shapes.parts.push_back(GrainPart(shapes.parts[part]));
-      shapes.body_of_part.push_back(static_cast<std::int32_t>(bodies + k));
-    }
-    shapes.first_part.push_back(static_cast<std::int32_t>(shapes.parts.size()));
-  }
-  turn_images(system);
-  NearParts& near = system.contacts.near_parts;
-  if (!near.active) return;
-  near.bodies.resize(shapes.parts.size());
-  near.met.resize(shapes.parts.size());
-}
-
-}  // namespace
-
 Periods periods_of(const PeriodicCell& cell) {
   const bool rows = cell.along == PeriodicCell::Along::xy;
   return {{cell.width, 0}, rows ? Vec2{cell.shift, cell.height} : Vec2{}};
 }
 
-void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts) {
-  const std::size_t count = system.bodies.constants.size();
-  std::vector<PeriodicImage>& images = system.cell.images;
-  if (system.meets_images()) {
-    std::vector<Circle> circles;
-    for (std::size_t k = 0; k < count; ++k)
-      circles.push_back({system.bodies.motions[k].position, system.bodies.constants[k].radius});
-    images = images_near(circles, system.cell.now, system.contacts.margin + system.range);
-    if (system.contacts.near.active) system.contacts.near.bodies.resize(count + images.size());
-    list_images_of_shapes(system);
-  }
-  std::vector<ContactState> discs, parts;
-  for (ContactState contact : contacts) {
-    if (contact.j < 0) continue;
-    std::vector<ContactState>& list = are_discs(system, contact.i, contact.j) ? discs : parts;
-    if (contact.a != 0 || contact.b != 0) {
-      const auto place = std::ranges::lower_bound(images, PeriodicImage{contact.j, contact.b, contact.a});
-      if (place == images.end() || *place != PeriodicImage{contact.j, contact.b, contact.a})
-        bad_input("the state has a contact with an image that is far away", "it is of another scene, or damaged",
-                  "Resume with the scene that the state was saved from");
-      const auto image = static_cast<std::int32_t>(count) + static_cast<std::int32_t>(place - images.begin());
-      if (!system.shapes.parts.empty())
-        contact.part_j += system.shapes.first_part[image] - system.shapes.first_part[contact.j];
-      contact.j = image;
-    }
-    list.push_back(contact);
-  }
-  if (system.contacts.near.active) take_near_pairs(system, std::move(discs));
-  if (system.contacts.near_parts.active) take_near_parts(system, std::move(parts));
-}
-
-void find_images(GrainSystem& system) {
-  list_contacts(system, contact_states(system));
-}
-
-void turn_images(GrainSystem& system) {
-  if (system.shapes.parts.empty()) return;
-  const std::size_t bodies = system.bodies.constants.size();
-  for (std::size_t k = 0; k < system.cell.images.size(); ++k)
-    system.shapes.axes[bodies + k] = system.shapes.axes[system.cell.images[k].body];
-}
-
-void place_images(GrainSystem& system) {
-  const MovingCell& cell = system.cell;
-  const std::size_t count = system.bodies.constants.size();
-  NearPairs& pairs = system.contacts.near;
-  NearParts& near_parts = system.contacts.near_parts;
-  system.bodies.blocks.each_piece(cell.images.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const PeriodicImage& image = cell.images[k];
-      const Vec2 shift = cell.now.shift(image);
-      const Vec2 apart = cell.deforms ? cell.gradient * cell.before.shift(image) : Vec2{};
-      if (pairs.active) {
-        PairBody& seen = pairs.bodies[count + k];
-        seen = pairs.bodies[image.body];
-        seen.position += shift;
-        seen.velocity += apart;
-        seen.middle_velocity += apart;
-      }
-      if (!near_parts.active) continue;
-      const auto own = static_cast<std::size_t>(system.shapes.first_part[image.body]);
-      const auto first = static_cast<std::size_t>(system.shapes.first_part[count + k]),
-                 last = static_cast<std::size_t>(system.shapes.first_part[count + k + 1]);
-      for (std::size_t part = first; part < last; ++part) {
-        if (near_parts.met[part] == 0) continue;
-        PartBody& seen = near_parts.bodies[part];
-        seen = near_parts.bodies[own + (part - first)];
-        seen.centre += shift;
-        seen.velocity += apart;
-        seen.middle_velocity += apart;
-      }
-    }
-  });
-}
-
 void wrap_bodies(GrainSystem& system) {
   MovingCell& cell = system.cell;
-  std::vector<ContactState> contacts = contact_states(system);
   const auto columns = static_cast<std::int32_t>(std::nearbyint(cell.now.b.x / cell.now.a.x));
   bool changed = columns != 0;
   if (columns != 0) {
     // the period b less some of a: a multiple of b is the same of the new one, and so many a more
     cell.now.b.x -= columns * cell.now.a.x;
     cell.before.b.x -= columns * cell.before.a.x;
-    for (ContactState& contact : contacts) contact.a += columns * contact.b;
     for (PeriodicImage& crossed : cell.crossed) crossed.a += columns * crossed.b;
   }
   std::vector<PeriodicImage> moves(system.bodies.motions.size());
@@ -441,18 +309,19 @@ void wrap_bodies(GrainSystem& system) {
     position += cell.now.shift(move);
     cell.crossed[k].a -= move.a;
     cell.crossed[k].b -= move.b;
-    if (system.contacts.near.active) system.contacts.near.bodies[k].position = position;
+    if (system.contacts.has(Between::discs)) system.contacts.pairs.bodies[k].position = position;
   }
   cell.next = cell.now;
   if (!changed) return;
   move_images_of_bonds(system, columns, moves);
-  if (!system.meets_images()) return find_candidates(system);
-  for (ContactState& contact : contacts) {
-    if (contact.j < 0) continue;
-    contact.a += moves[contact.i].a - moves[contact.j].a;
-    contact.b += moves[contact.i].b - moves[contact.j].b;
-  }
-  list_contacts(system, contacts);
+  each_list(system.contacts, [&](NearList& list) {
+    for (std::size_t p = 0; p < list.count && list.images.used; ++p) {
+      const Partners of = partners_of(system, list, p);
+      PairImages& images = list.images[p / lanes_of_pairs];
+      images.a[p % lanes_of_pairs] += columns * of.b + moves[of.i].a - moves[of.j].a;
+      images.b[p % lanes_of_pairs] += moves[of.i].b - moves[of.j].b;
+    }
+  });
   find_candidates(system);
 }
 

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Steps of a periodic cell that deforms, and its state.
-///
-/// Images of the bodies of a periodic cell, which the loops over pairs and over parts take for bodies.
-///
-/// A pair of i and an image of j is listed once, for i < j, the image as a body with a number behind those of all
-/// bodies, its parts behind all parts. Its impulse goes to the place for a body of a later block and from there to j.
-/// Loops and scenes without a cell do not change by it.
+/// Steps of a periodic cell that deforms, and its state. Pairs carry the numbers of periods to the image that i meets.
 #pragma once
 
 #include <array>
@@ -22,22 +16,10 @@
 namespace equidem {
 
 struct GrainSystem;
-struct ContactState;
+struct GrainContact;
 struct PeriodicCell;
 
 Periods periods_of(const PeriodicCell& cell);
-
-/// Find the images again, and replace the near pairs and parts by contacts, in any order; those with walls are not
-/// read.
-void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts);
-
-/// Find the images again for the present margin of the candidates; contacts keep their state.
-void find_images(GrainSystem& system);
-
-/// Move the images to where their bodies are, for the loops.
-void place_images(GrainSystem& system);
-/// Turn those of ellipses and clumps as their bodies.
-void turn_images(GrainSystem& system);
 
 /// Steps after which bodies that have left the cell are taken as their images inside. That depends on the step alone: a
 /// resumed run does the same.
@@ -47,16 +29,26 @@ constexpr std::int64_t steps_between_wraps = 256;
 /// anew.
 void wrap_bodies(GrainSystem& system);
 
-struct GrainContact;
-struct GrainSystem;
-
 /// The control of one component of the stress.
 struct CellControl : ControlState {
   double stiffness = 0;  ///< Pa, if all discs followed the stretch
   double viscosity = 0;  ///< Pa s, likewise
 };
 
-/// Sums over the bodies of a block and the images that they meet.
+/// Sum of the impulses on images times the numbers of periods to them, N s.
+struct ImageImpulses {
+  Vec2 a, b;
+
+  ImageImpulses& operator+=(const ImageImpulses& other) {
+    a += other.a;
+    b += other.b;
+    return *this;
+  }
+  /// Sum of impulse times shift, N s m.
+  [[nodiscard]] Tensor2 moment(const Periods& periods) const { return outer(a, periods.a) + outer(b, periods.b); }
+};
+
+/// Sums over the bodies of a block.
 struct CellSums {
   Tensor2 here, before;  ///< of impulse times place, after the step and before it, N s m
   Tensor2 flux;          ///< of m u u, J
@@ -80,9 +72,8 @@ struct MovingCell : CellMotion {
   double largest_radius = 0;   ///< of the bodies, m
   Periods next;                ///< at the end of this step
   std::vector<CellSums> sums;  ///< of each block
-  CellSums bond_sums;          ///< of the impulses of bonds on images
+  ImageImpulses on_images;     ///< of contacts and bonds in this step
   double solid = 0;            ///< area of the bodies, m²
-  std::vector<PeriodicImage> images;
   /// For each body the periods by which it has been moved into the cell, with the opposite sign: where it would be.
   std::vector<PeriodicImage> crossed;
 

@@ -8,6 +8,11 @@
 namespace equidem {
 namespace {
 
+void collide(GrainSystem& system, Between between, std::size_t block) {
+  NearLists& lists = system.contacts.of(between);
+  if (lists.active() && lists.blocks[block].count > 0) lists.loop(system, lists.blocks[block], block);
+}
+
 void collide_block(GrainSystem& system, std::size_t block, bool clear) {
   const BodyBlocks& blocks = system.bodies.blocks;
   if (clear) {
@@ -15,12 +20,8 @@ void collide_block(GrainSystem& system, std::size_t block, bool clear) {
     std::memset(static_cast<void*>(impulses + blocks.begin(block)), 0,
                 (blocks.end(block) - blocks.begin(block)) * sizeof *impulses);
   }
-  if (system.contacts.near.active) system.contacts.near.loop(system, block);
-  NearParts& parts = system.contacts.near_parts;
-  for (std::size_t l = 0; parts.active && l < parts.loops.size(); ++l) {
-    NearParts::List& list = parts.blocks[block].lists[l];
-    if (list.count > 0) parts.loops[l](system, list, block);
-  }
+  for (const Between between : {Between::discs, Between::round_parts, Between::ellipses})
+    collide(system, between, block);
 }
 
 void complete_impulses(GrainSystem& system, std::size_t block, bool turning) {
@@ -38,10 +39,10 @@ void complete_impulses(GrainSystem& system, std::size_t block, bool turning) {
 
 /// The contacts of a block with walls.
 void collide_with_walls(GrainSystem& system, std::size_t block) {
-  NearWalls& near = system.contacts.near_walls;
-  if (!near.active || near.blocks[block].count == 0) return;
+  const std::vector<NearList>& walls = system.contacts.of(Between::walls).blocks;
+  if (walls.empty() || walls[block].count == 0) return;
   system.bodies.sums[block].on_walls.assign(system.walls.loads.size(), {});
-  near.loop(system, near.blocks[block], block);
+  collide(system, Between::walls, block);
 }
 
 void count_sums(GrainSystem& system, BlockSums& sums) {
@@ -49,6 +50,7 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
   system.counters.evaluations += sums.evaluations;
   system.counters.contacts += sums.contacts;
   system.deepest = std::max(system.deepest, sums.deepest);
+  system.cell.on_images += sums.on_images;
   for (std::size_t w = 0; w < sums.on_walls.size(); ++w) system.walls.loads[w].add_in_step(sums.on_walls[w]);
   sums = {};
 }
@@ -56,15 +58,14 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
 }  // namespace
 
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
-  if (!system.cell.images.empty()) place_images(system);
   const bool keeps = !system.bodies.impulses_before.empty();
   if (keeps) system.bodies.impulses_before.swap(system.bodies.impulses);
   const bool clear = keeps || !system.bodies.cleared;
-  system.bodies.in_place = move && system.contacts.near.active && !keeps && !system.options.verlet() &&
+  system.bodies.in_place = move && system.contacts.has(Between::discs) && !keeps && !system.options.verlet() &&
                            system.shapes.parts.empty() && !system.cell.active;
-  system.bodies.cleared = system.bodies.in_place && !system.contacts.near.record;
+  system.bodies.cleared = system.bodies.in_place && !system.contacts.record;
   if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
-  const bool turning = system.contacts.near.active && system.friction && system.options.verlet();
+  const bool turning = system.contacts.has(Between::discs) && system.friction && system.options.verlet();
   system.bodies.blocks.each_in_turn(
       system.bodies.earliest, [&](std::size_t block) { collide_block(system, block, clear); },
       [&](std::size_t block) {
@@ -86,20 +87,17 @@ void connect_blocks(GrainSystem& system) {
   for (std::vector<InwardImpulse>& inward : inwards) inward.clear();
   std::vector<std::size_t>& earliest = system.bodies.earliest;
   std::iota(earliest.begin(), earliest.end(), std::size_t{0});
-  std::size_t from = 0;
-  const auto connect = [&](const OutwardImpulses& outward) {
+  const auto connect = [&](const OutwardImpulses& outward, std::size_t from) {
     for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
-      const std::int32_t body = system.body_of(outward.bodies[k]);
+      const std::int32_t body = outward.bodies[k];
       const std::size_t to = blocks.of(static_cast<std::size_t>(body));
       inwards[to].push_back({body, &outward.impulses[k]});
       earliest[to] = std::min(earliest[to], from);
     }
   };
-  for (; from < blocks.count(); ++from) {
-    if (system.contacts.near.active) connect(system.contacts.near.blocks[from].outward);
-    if (!system.contacts.near_parts.active) continue;
-    for (const NearParts::List& list : system.contacts.near_parts.blocks[from].lists) connect(list.outward);
-  }
+  for (std::size_t from = 0; from < blocks.count(); ++from)
+    for (const NearLists& lists : system.contacts.near)
+      if (lists.active()) connect(lists.blocks[from].outward, from);
 }
 
 void take_longest_way(GrainSystem& system) {

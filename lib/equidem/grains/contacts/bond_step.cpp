@@ -187,7 +187,7 @@ void refuse_crept_bonds(const GrainSystem& system) {
 void push_springs(GrainSystem& system) {
   PackedBonds& packed = system.bonds.packed;
   for (BondBatch& batch : packed.batches) {
-    batch.here = batch.before = {};
+    batch.on_images = {};
     batch.reached.clear();
   }
   packed.state_is_new = false;
@@ -215,10 +215,7 @@ void add_bond_impulses(GrainSystem& system) {
       }
     }
   });
-  for (const BondBatch& batch : packed.batches) {
-    system.cell.bond_sums.here += batch.here;
-    system.cell.bond_sums.before += batch.before;
-  }
+  for (const BondBatch& batch : packed.batches) system.cell.on_images += batch.on_images;
 }
 
 void count_opening_kick(GrainSystem& system) {

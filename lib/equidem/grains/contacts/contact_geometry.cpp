@@ -33,7 +33,7 @@ PartGeometry geometry_of_parts(const GrainSystem& system, const Partners& of, bo
   const GrainPart& part_i = system.shapes.parts[of.part_i];
   const GrainPart& part_j = system.shapes.parts[of.part_j];
   const Vec2 to_i = offset_of(part_i, system.shapes.axes[i]), to_j = offset_of(part_j, system.shapes.axes[j]);
-  const Vec2 branch = system.position_of(of.j) - system.bodies.motions[i].position + (to_j - to_i);
+  const Vec2 branch = system.branch(of) + (to_j - to_i);
   const double reach = part_i.a + part_j.a, square = dot(branch, branch);
   const bool gaps = system.range > 0;
   if (square >= reach * reach && !gaps) return {};

@@ -66,7 +66,7 @@ inline double inverse_tangential_mass(const GrainSystem& system, const Candidate
   const GrainBody& bi = system.bodies.constants[candidate.i];
   double inverse = bi.inverse_mass + geometry.lever_i * geometry.lever_i * bi.inverse_moment;
   if (candidate.j >= 0) {
-    const GrainBody& bj = system.bodies.constants[system.body_of(candidate.j)];
+    const GrainBody& bj = system.bodies.constants[candidate.j];
     inverse += bj.inverse_mass + geometry.lever_j * geometry.lever_j * bj.inverse_moment;
   }
   return inverse;

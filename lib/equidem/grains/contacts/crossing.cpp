@@ -12,54 +12,52 @@
 namespace equidem {
 namespace {
 
-/// Within a step, `share` of it gone: ways and turns are uniform. \param body or an image
-GrainMotion motion_at(const GrainSystem& system, std::int32_t body, double share) {
-  const auto own = static_cast<std::size_t>(system.body_of(body));
-  GrainMotion motion = system.bodies.motions[own];
-  const Vec2 from = system.position_of(body);
-  motion.position = from + share * (system.next_position_of(body) - from);
-  motion.angle += share * (system.bodies.next[own].angle - motion.angle);
-  return motion;
-}
-
 struct Pose {
   GrainPart part;
   Vec2 centre, axis;
   [[nodiscard]] Ellipse ellipse() const { return {part.a, part.b, axis}; }
 };
 
-Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_index, double share) {
-  const GrainMotion motion = motion_at(system, body, share);
-  if (system.shapes.parts.empty()) {
-    const double radius = system.bodies.constants[system.body_of(body)].radius;
-    return {{{}, radius, radius, radius}, motion.position, {1, 0}};
-  }
-  const GrainPart& part = system.shapes.parts[part_index];
-  const Vec2 axis = axis_at(motion.angle);
-  return {part, motion.position + offset_of(part, axis), axis};
+/// Within a step, `share` of it gone: ways and turns are uniform.
+Pose pose_at(const GrainSystem& system, const PeriodicImage& body, std::int32_t part_index, double share) {
+  const GrainMotion &before = system.bodies.motions[body.body], &after = system.bodies.next[body.body];
+  const Vec2 from = before.position + system.cell.now.shift(body), to = after.position + system.cell.next.shift(body);
+  const Vec2 place = share == 1 ? to : from + share * (to - from);
+  const GrainPart part = system.part(body.body, part_index);
+  if (part.is_round() && part.offset == Vec2{}) return {part, place, {1, 0}};
+  const Vec2 axis = axis_at(before.angle + share * (after.angle - before.angle));
+  return {part, place + offset_of(part, axis), axis};
 }
 
-}  // namespace
+/// Branch from part i to part j, or position of part i if j is a wall, before and after the step.
+struct PartWay {
+  Vec2 before, after;
+  double radius_i = 0, radius_j = 0;  ///< radii of the inscribed circles, m
+};
 
 PartWay way_of_parts(const GrainSystem& system, const Partners& of) {
-  const Pose start_i = pose_at(system, of.i, of.part_i, 0), end_i = pose_at(system, of.i, of.part_i, 1);
+  const Pose start_i = pose_at(system, {of.i}, of.part_i, 0), end_i = pose_at(system, {of.i}, of.part_i, 1);
   if (of.j < 0) return {start_i.centre, end_i.centre, start_i.part.b, 0};
-  const Pose start_j = pose_at(system, of.j, of.part_j, 0), end_j = pose_at(system, of.j, of.part_j, 1);
+  const Pose start_j = pose_at(system, of.image(), of.part_j, 0), end_j = pose_at(system, of.image(), of.part_j, 1);
   return {start_j.centre - start_i.centre, end_j.centre - end_i.centre, start_i.part.b, start_j.part.b};
 }
 
+/// Whether a part of a pair is an ellipse.
 bool has_ellipse(const GrainSystem& system, const Partners& of) {
   if (system.shapes.parts.empty()) return false;
   if (!system.shapes.parts[of.part_i].is_round()) return true;
   return of.j >= 0 && !system.shapes.parts[of.part_j].is_round();
 }
 
+/// The error of two ellipses in the step: one approaches with its centre in the other, the normal of an overlap
+/// reverses, an overlap of more than half the smaller short half-axis occurs undetected between the two instants, or
+/// one larger than that half-axis occurs without a contact before. \return nullptr: no error
 const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of) {
   const auto contact_at = [&](double share) {
-    const Pose i = pose_at(system, of.i, of.part_i, share), j = pose_at(system, of.j, of.part_j, share);
+    const Pose i = pose_at(system, {of.i}, of.part_i, share), j = pose_at(system, of.image(), of.part_j, share);
     return contact_of_ellipses(i.ellipse(), j.ellipse(), j.centre - i.centre);
   };
-  const Pose i = pose_at(system, of.i, of.part_i, 1), j = pose_at(system, of.j, of.part_j, 1);
+  const Pose i = pose_at(system, {of.i}, of.part_i, 1), j = pose_at(system, of.image(), of.part_j, 1);
   const Vec2 branch = j.centre - i.centre;
   const PartWay way = way_of_parts(system, of);
   const bool inside = holds(i.ellipse(), branch) || holds(j.ellipse(), branch);
@@ -69,7 +67,7 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of) 
   if (before.gap < 0) return nullptr;
   // how far a point of one goes against the other, at most
   const auto turn = [&](std::int32_t body, const GrainPart& part) {
-    const auto b = static_cast<std::size_t>(system.body_of(body));
+    const auto b = static_cast<std::size_t>(body);
     return std::abs(system.bodies.next[b].angle - system.bodies.motions[b].angle) * part.a;
   };
   const double reach = norm(way.after - way.before) + turn(of.i, i.part) + turn(of.j, j.part);
@@ -82,8 +80,6 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of) 
   return -after.gap > small ? "pass through" : nullptr;
 }
 
-namespace {
-
 /// Displacement over the smallest radius below which no body can cross another.
 constexpr double slow_way = 0.1;
 
@@ -91,7 +87,7 @@ constexpr double slow_way = 0.1;
   const auto i = static_cast<std::size_t>(of.i);
   std::string other;
   if (of.j >= 0) {
-    other = fmt::format("grain {}", system.bodies.grain_of[system.body_of(of.j)]);
+    other = fmt::format("grain {}", system.bodies.grain_of[of.j]);
   } else {
     const Wall& wall = system.scene.walls[~of.j];
     other =
@@ -141,8 +137,6 @@ void check_wall(const GrainSystem& system, const Partners& of) {
   }
 }
 
-}  // namespace
-
 void check_parts(const GrainSystem& system, const Partners& of) {
   const PartWay way = way_of_parts(system, of);
   if (!has_ellipse(system, of)) {
@@ -151,6 +145,8 @@ void check_parts(const GrainSystem& system, const Partners& of) {
     refuse(system, of, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
   }
 }
+
+}  // namespace
 
 void refuse_runaway(const GrainSystem& system, double reach) {
   if (std::isfinite(reach)) return;
@@ -186,24 +182,8 @@ void find_places_before(GrainSystem& system) {
 }
 
 void refuse_crossings(const GrainSystem& system) {
-  const auto check = [&](const Partners& of) {
-    if (of.j < 0) {
-      check_wall(system, of);
-    } else {
-      check_parts(system, of);
-    }
-  };
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      const Partners of{block.first(p), block.second(p)};
-      const auto i = static_cast<std::size_t>(of.i), j = static_cast<std::size_t>(system.body_of(of.j));
-      check_discs(system, of,
-                  {system.position_of(of.j) - system.bodies.motions[i].position,
-                   system.next_position_of(of.j) - system.bodies.next[i].position, system.bodies.constants[i].radius,
-                   system.bodies.constants[j].radius});
-    }
-  }
-  each_list(system.contacts, [&](const NearParts::List& list) {
+  const auto check = [&](const Partners& of) { of.j < 0 ? check_wall(system, of) : check_parts(system, of); };
+  each_list(system.contacts, [&](const NearList& list) {
     for (std::size_t p = 0; p < list.count; ++p) check(partners_of(system, list, p));
   });
   for (const Candidate& candidate : system.contacts.candidates) check({candidate.i, candidate.j});

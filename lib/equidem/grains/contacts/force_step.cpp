@@ -127,7 +127,7 @@ CandidateLoop candidate_loop(NormalLaw law, bool friction) {
 }
 
 void move_by_euler(GrainSystem& system, std::size_t block) {
-  if (system.contacts.near.active) return move_pair_bodies(system, block);
+  if (system.contacts.has(Between::discs)) return move_pair_bodies(system, block);
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
   system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
@@ -146,7 +146,7 @@ void move_by_euler(GrainSystem& system, std::size_t block) {
 void drift_of_verlet(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  move_bodies(system, [&, near = system.contacts.near.active](std::size_t i) {
+  move_bodies(system, [&, near = system.contacts.has(Between::discs)](std::size_t i) {
     const GrainBody& body = system.bodies.constants[i];
     GrainMotion motion = system.bodies.motions[i];
     const Vec2 gain = body.inverse_mass * system.bodies.impulses[i].impulse;
@@ -155,7 +155,7 @@ void drift_of_verlet(GrainSystem& system) {
     motion.spin += 0.5 * turn;
     motion.position += dt * motion.velocity;
     motion.angle += dt * motion.spin;
-    if (near) system.contacts.near.bodies[i] = pair_body(body, motion, gain, turn);
+    if (near) system.contacts.pairs.bodies[i] = pair_body(body, motion, gain, turn);
     return motion;
   });
 }

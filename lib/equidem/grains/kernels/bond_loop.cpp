@@ -14,6 +14,7 @@
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/respond.hpp"
 
 namespace equidem {
 namespace {
@@ -232,25 +233,19 @@ EQUIDEM_ALWAYS_INLINE Numbers without_fourth(const Numbers& row) {
   return as<Numbers>(bits_of(row) & load<Bits<Numbers>>(three));
 }
 
-/// Displacements from the second bodies to their images.
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE Vectors<Lanes> shift_of(const Periods& periods, const BondImages& images) {
-  const auto a = load<Lanes>(images.a), b = load<Lanes>(images.b);
-  return {a * periods.a.x + b * periods.b.x, a * periods.a.y + b * periods.b.y};
-}
-
-/// Sum over bonds of their impulses on images times the ways to these (CellSums).
+/// Sum over bonds of their impulses on images times the periods to these (ImageImpulses).
 template <class Lanes>
 struct ImageSums {
-  Lanes xx{}, xy{}, yx{}, yy{};
+  Vectors<Lanes> a{}, b{};
 
-  EQUIDEM_ALWAYS_INLINE void add(const Lanes& x, const Lanes& y, const Vectors<Lanes>& shift) {
-    xx += x * shift.x;
-    xy += x * shift.y;
-    yx += y * shift.x;
-    yy += y * shift.y;
+  EQUIDEM_ALWAYS_INLINE void add(const Lanes& x, const Lanes& y, const PairImages& images) {
+    const auto along_a = load<Lanes>(images.a), along_b = load<Lanes>(images.b);
+    a = {a.x + x * along_a, a.y + y * along_a};
+    b = {b.x + x * along_b, b.y + y * along_b};
   }
-  [[nodiscard]] EQUIDEM_ALWAYS_INLINE Tensor2 sum() const { return {add_up(xx), add_up(xy), add_up(yx), add_up(yy)}; }
+  [[nodiscard]] EQUIDEM_ALWAYS_INLINE ImageImpulses sum() const {
+    return {{add_up(a.x), add_up(a.y)}, {add_up(b.x), add_up(b.y)}};
+  }
 };
 
 /// Bonds as they lie and move.
@@ -316,7 +311,7 @@ void Stretch<kind>::run(GrainSystem& system, BondBatch& batch) {
   const bool deforms = kind.cell && system.cell.deforms;
   const double friction = system.bonds.friction;
   Lanes nearest = all<Lanes>(1);
-  ImageSums<Lanes> here, before;
+  ImageSums<Lanes> on_images;
   for (std::size_t g = batch.first_group; g < batch.end_group; ++g) {
     const BondGroup& group = packed.groups[g];
     const SpringGroup& spring = packed.springs[g];
@@ -358,11 +353,7 @@ void Stretch<kind>::run(GrainSystem& system, BondBatch& batch) {
       subtract(&by_springs[group.j[k]], turning ? fourth_twice(rows[k]) : rows[k]);
     }
     if constexpr (kind.cell) {
-      if (deforms) {
-        const BondImages& images = packed.images[g];
-        here.add(-x, -y, shift_of<Lanes>(system.cell.now, images));
-        before.add(-x, -y, shift_of<Lanes>(system.cell.before, images));
-      }
+      if (deforms) on_images.add(-x, -y, packed.images[g]);
     }
     if constexpr (kind.strengths) {
       const StrengthGroup& strength = packed.strengths[g];
@@ -376,8 +367,7 @@ void Stretch<kind>::run(GrainSystem& system, BondBatch& batch) {
     }
   }
   take_nearest(nearest, batch);
-  batch.here = here.sum();
-  batch.before = before.sum();
+  batch.on_images = on_images.sum();
 }
 
 template <BondSprings springs>
@@ -556,7 +546,8 @@ template <class Lanes>
 void Resist<kind>::run(GrainSystem& system, BondBatch& batch) {
   PackedBonds& packed = system.bonds.packed;
   const bool verlet = system.options.verlet();
-  if (!verlet && !kind.opening && system.contacts.near.active && system.friction) {  // else no impulses are along rims
+  if (!verlet && !kind.opening && system.contacts.has(Between::discs) &&
+      system.friction) {  // else no impulses are along rims
     for (std::size_t n = batch.first_body; n < batch.end_body; ++n) {
       const auto b = static_cast<std::size_t>(packed.bodies[n]);
       turn_rims(system.bodies.impulses[b], system.bodies.constants[b]);
@@ -567,7 +558,7 @@ void Resist<kind>::run(GrainSystem& system, BondBatch& batch) {
   const double share_acted = verlet ? 0.25 : 0.5;
   const bool deforms = kind.cell && system.cell.deforms;
   Lanes lost{}, nearest = all<Lanes>(1);
-  ImageSums<Lanes> here, before;
+  ImageSums<Lanes> on_images;
   for (std::size_t g = batch.first_group; g < batch.end_group; ++g) {
     const BondGroup& group = packed.groups[g];
     DashpotGroup& dashpot = packed.dashpots[g];
@@ -633,17 +624,12 @@ void Resist<kind>::run(GrainSystem& system, BondBatch& batch) {
       add(bodies[group.j[k]].given, fourth_twice(rows[k]));
     }
     if constexpr (kind.cell) {
-      if (deforms) {
-        const BondImages& images = packed.images[g];
-        here.add(x, y, shift_of<Lanes>(system.cell.now, images));
-        before.add(x, y, shift_of<Lanes>(system.cell.before, images));
-      }
+      if (deforms) on_images.add(x, y, packed.images[g]);
     }
   }
   batch.lost = (verlet ? 0.5 : 1) * add_up(lost);
   take_nearest(nearest, batch);
-  batch.here += here.sum();
-  batch.before += before.sum();
+  batch.on_images += on_images.sum();
 }
 
 /// The loop compiled for the dashpots of the system.

@@ -18,6 +18,7 @@
 
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 
 namespace equidem {
@@ -47,11 +48,6 @@ struct alignas(64) SpringGroup {
 struct alignas(64) StrengthGroup {
   PairLanes tension, shear;
   PairLanes per_moment;  ///< 6/width, 1/m; 0 without bending spring
-};
-
-/// Images of the second bodies in a periodic cell: periods along x and along y.
-struct alignas(64) BondImages {
-  PairLanes a, b;
 };
 
 struct alignas(64) DashpotGroup {
@@ -84,9 +80,9 @@ struct BondBatch {
   std::size_t first_group = 0, end_group = 0;
   std::size_t first_body = 0, end_body = 0;  ///< in PackedBonds::bodies; of seams none
   // of the present step
-  double lost = 0;                   ///< J
-  double nearest = 0;                ///< least distance of centres over the sum of the radii
-  Tensor2 here, before;              ///< as in CellSums
+  double lost = 0;     ///< J
+  double nearest = 0;  ///< least distance of centres over the sum of the radii
+  ImageImpulses on_images;
   std::vector<std::size_t> reached;  ///< groups of which a bond may have reached its strength
 };
 
@@ -101,7 +97,7 @@ struct PackedBonds {
   // as long as the groups, or empty where no bond has them
   LaneVector<SpringGroup> springs;
   LaneVector<StrengthGroup> strengths;
-  LaneVector<BondImages> images;
+  LaneVector<PairImages> images;
   LaneVector<DashpotGroup> dashpots;
   LaneVector<RollingGroup> rolling;
 

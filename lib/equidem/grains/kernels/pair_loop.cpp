@@ -19,7 +19,7 @@ template <class Lanes>
 struct LoopNumbers {
   LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
-  std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
+  std::int64_t now = 0;  ///< the step that is being made, as ContactGroup::since
   bool record = false;
 };
 
@@ -51,7 +51,8 @@ struct Outcome {
 };
 
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, DiscGeometry<Lanes>& found) {
+EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const ContactGroup& group, const PairImages* images,
+                                   const CellShifts& shifts, DiscGeometry<Lanes>& found) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
   alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, minus, minus, 0, 0};
@@ -62,6 +63,14 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
     m[k] = load<Lanes>(&bodies[group.j[k]].position.x) + as<Lanes>(bits_of(i) ^ turned);
   }
   transpose(m);
+  if (images != nullptr) {
+    const Vectors<Lanes> shift = shift_of<Lanes>(shifts.places, *images);
+    const Vectors<Lanes> velocity = shift_of<Lanes>(shifts.velocities, *images);
+    m[0] += shift.x;
+    m[1] += shift.y;
+    m[2] += velocity.x;
+    m[3] += velocity.y;
+  }
   Lanes& bx = m[0];
   const Lanes &by = m[1], &u = m[2], &v = m[3];
   const Lanes square = square_of_branch(bx, by);
@@ -105,7 +114,7 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const DiscGeometry<Lanes>& geometry, co
 
 /// Their motion at the contact points; over the drift in Verlet schemes, in which the normal turns.
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const DiscGeometry<Lanes>& geometry, const PairGroup& group,
+EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const DiscGeometry<Lanes>& geometry, const ContactGroup& group,
                                                      const PairSlips* slips, double dt) {
   ContactMotion<Lanes> motion;
   motion.overlap = geometry.overlap;
@@ -131,7 +140,7 @@ EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const DiscGeometry<Lanes>& 
 
 /// R (spin of j - spin of i), by the speeds of the rims.
 template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE Lanes rolling_velocity(const PairBody* bodies, const PairGroup& group,
+EQUIDEM_ALWAYS_INLINE Lanes rolling_velocity(const PairBody* bodies, const ContactGroup& group,
                                              const ContactEffects& effects) {
   PairLanes rim_i, rim_j;
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
@@ -145,7 +154,7 @@ EQUIDEM_ALWAYS_INLINE Lanes rolling_velocity(const PairBody* bodies, const PairG
 
 template <class Law, ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, const PairBody* bodies,
-                                         const DiscGeometry<Lanes>& geometry, PairGroup& group, PairSlips* slips,
+                                         const DiscGeometry<Lanes>& geometry, ContactGroup& group, PairSlips* slips,
                                          const PairLaws* laws, ContactEffects* effects, PairRecords* records,
                                          LaneSums<Lanes>& sums, Outcome<Lanes>& outcome) {
   ContactChanges<Lanes> at;
@@ -200,9 +209,10 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
 
 /// \tparam outward some bodies are behind the block
 template <ResponseKind kind, bool outward, class Lanes>
-EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
-                                BodyImpulse*& next) {
+EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const PairImages* images, const Outcome<Lanes>& outcome,
+                                const Receivers& to, BodyImpulse*& next, LaneSums<Lanes>& sums) {
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
+  if (images != nullptr) add_on_images(outcome.px, outcome.py, *images, sums);
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
   // the tangential impulse turns both bodies the same way round, and its lever is the radius
@@ -215,59 +225,66 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& ou
 template <class Law, ResponseKind kind>
 struct CollidePairs {
   template <class Lanes>
-  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t b);
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearList& list, std::size_t block);
 };
 
 template <class Law, ResponseKind kind>
 template <class Lanes>
-void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
-  const NearPairs& near = system.contacts.near;
-  PairBlock& block = system.contacts.near.blocks[b];
-  const PairLaw& law = near.law;
+void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size_t block) {
+  const bool record = system.contacts.record;
+  const PairLaw law = system.contacts.law.value_or(PairLaw{});
   const LoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
                                     sliding_law(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
                                                 all<Lanes>(1 / law.tangential_stiffness), system.dt())},
                                    system.dt(),
                                    system.step + (system.options.verlet() ? 0 : 1),
-                                   near.record};
-  block.records.resize(near.record ? block.groups.size() : 0);
+                                   record};
+  list.records.used = record;
+  list.records.resize(record ? list.groups.size() : 0);
   LaneSums<Lanes> sums;
-  const PairBody* bodies = near.bodies.data();
-  const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(b)), nullptr};
-  BodyImpulse* outward = block.outward.impulses.data();
+  const PairBody* bodies = system.contacts.pairs.bodies.data();
+  const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),
+                     nullptr};
+  BodyImpulse* outward = list.outward.impulses.data();
   DiscGeometry<Lanes> geometry[groups_at_once];
   Outcome<Lanes> outcome[groups_at_once];
-  const std::size_t count = block.groups.size();
-  PairGroup* groups = block.groups.data();
-  PairSlips* slips = block.slips.data();
-  const PairLaws* laws = block.laws.data();
-  ContactEffects* effects = block.effects.data();
-  PairRecords* records = block.records.data();
+  const std::size_t count = list.groups.size();
+  ContactGroup* groups = list.groups.data();
+  PairSlips* slips = list.slips.data();
+  const PairLaws* laws = list.laws.data();
+  ContactEffects* effects = list.effects.data();
+  PairRecords* records = list.records.data();
+  const CellShifts shifts(system.cell);
+  const PairImages* images = list.images.used ? list.images.data() : nullptr;
+  const auto images_at = [&](std::size_t g) { return images == nullptr ? nullptr : images + g; };
   for (std::size_t first = 0; first < count; first += groups_at_once) {
     const std::size_t here = std::min(groups_at_once, count - first);
-    for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
+    for (std::size_t g = 0; g < here; ++g)
+      measure<kind>(bodies, groups[first + g], images_at(first + g), shifts, geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
       respond_discs<Law, kind>(numbers, bodies, geometry[g], groups[first + g],
                                kind.friction ? slips + (first + g) : nullptr, kind.equal ? nullptr : laws + (first + g),
-                               effects_at<kind>(effects, first + g), near.record ? records + (first + g) : nullptr,
-                               sums, outcome[g]);
+                               effects_at<kind>(effects, first + g), record ? records + (first + g) : nullptr, sums,
+                               outcome[g]);
     }
-    if (first + here <= block.first_outward) {
-      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward);
+    if (first + here <= list.first_outward) {
+      for (std::size_t g = 0; g < here; ++g)
+        give<kind, false>(groups[first + g], images_at(first + g), outcome[g], to, outward, sums);
     } else {
-      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward);
+      for (std::size_t g = 0; g < here; ++g)
+        give<kind, true>(groups[first + g], images_at(first + g), outcome[g], to, outward, sums);
     }
   }
-  add(sums, system.bodies.sums[b]);
+  add(sums, system.bodies.sums[block]);
 }
 
 template <class Law, ResponseKind kind>
-NearPairs::Loop choose_pair_loop() {
-  return by_vector_width<CollidePairs<Law, kind>, GrainSystem&, std::size_t>();
+NearLists::Loop choose_pair_loop() {
+  return by_vector_width<CollidePairs<Law, kind>, GrainSystem&, NearList&, std::size_t>();
 }
 
 template <class Law, bool equal>
-NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
+NearLists::Loop choose_pair_loop(const GrainSystem& system) {
   if constexpr (!equal) {
     if (system.has_effects())
       return system.options.verlet() ? choose_pair_loop<Law, with_effects<true>>()
@@ -283,10 +300,10 @@ NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
 
 }  // namespace
 
-NearPairs::Loop near_pair_loop(const GrainSystem& system) {
-  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearPairs::Loop {
+NearLists::Loop loop_of_discs(const GrainSystem& system) {
+  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearLists::Loop {
     if constexpr (Law::facts.kind == LawKind::force) {
-      return system.contacts.near.equal ? choose_pair_loop<Law, true>(system) : choose_pair_loop<Law, false>(system);
+      return system.contacts.law ? choose_pair_loop<Law, true>(system) : choose_pair_loop<Law, false>(system);
     } else {
       return nullptr;
     }

@@ -12,7 +12,6 @@
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
@@ -70,7 +69,7 @@ void MoveBlock<turning, clears>::run(GrainSystem& system, std::size_t block) {
   const GrainMotion* motions = system.bodies.motions.data();
   GrainMotion* next = system.bodies.in_place ? system.bodies.motions.data() : system.bodies.next.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
-  PairBody* pair_bodies = system.contacts.near.bodies.data();
+  PairBody* pair_bodies = system.contacts.pairs.bodies.data();
   // Compared by their bits: numbers that are not negative lie in the same order, and no number behind all of them.
   std::uint64_t longest = 0;
   for (std::size_t i = system.bodies.blocks.begin(block); i < end; ++i) {
@@ -115,54 +114,6 @@ void move_pair_bodies(GrainSystem& system, std::size_t block) {
   const bool turning = system.friction || system.bonds.held > 0 || !system.shapes.parts.empty();
   const auto move = turning ? choose_move<true>(system.bodies.cleared) : choose_move<false>(system.bodies.cleared);
   move(system, block);
-}
-
-namespace {
-
-/// Normal and tangential. The energies of a group are found before they are added, pair by pair: the lists of a run
-/// that is resumed have other groups and the same sum.
-template <class Law>
-std::pair<double, double> elastic_of_block(const GrainSystem& system, const PairBlock& block) {
-  const NearPairs& near = system.contacts.near;
-  const bool images = system.meets_images();
-  const auto position_of = [&](std::int32_t j) {
-    return images ? system.position_of(j) : system.bodies.motions[j].position;
-  };
-  double normal = 0, tangential = 0;
-  for (std::size_t g = 0; g < block.groups.size(); ++g) {
-    const PairGroup& group = block.groups[g];
-    PairLanes x, y, energy;
-    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-      const Vec2 branch = position_of(group.j[k]) - system.bodies.motions[group.i[k]].position;
-      x[k] = branch.x;
-      y[k] = branch.y;
-    }
-    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-      const double overlap = group.reach[k] - std::sqrt(x[k] * x[k] + y[k] * y[k]);
-      const double stiffness = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      energy[k] = Law::facts.energy(stiffness, overlap > 0 ? overlap : 0);
-    }
-    for (const double one : energy) normal += one;
-    for (std::size_t k = 0; system.friction && k < lanes_of_pairs; ++k) {
-      const double spring = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-      tangential += 0.5 * spring * block.slips[g].stretch[k] * block.slips[g].stretch[k];
-    }
-  }
-  return {normal, tangential};
-}
-
-}  // namespace
-
-std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
-  const std::vector<PairBlock>& blocks = system.contacts.near.blocks;
-  if (blocks.empty()) return {};
-  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> std::pair<double, double> {
-    if constexpr (Law::facts.kind == LawKind::force) {
-      return system.bodies.blocks.sum([&](std::size_t b) { return elastic_of_block<Law>(system, blocks[b]); });
-    } else {
-      return {};
-    }
-  });
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/kernels/respond.hpp"
 
 namespace equidem::eight {
 
@@ -53,18 +54,14 @@ struct Standing {
   Vectors<Lanes> axis_i, axis_j, offset_i, offset_j;
 };
 
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE Lanes column(const PartGroup& group, PartGroup::Column which) {
-  return load<Lanes>(group.numbers[which]);
-}
-
 /// \tparam round no ellipses in the list
 template <bool round, class Lanes>
-EQUIDEM_ALWAYS_INLINE Standing<Lanes> standing_of(const PartBody* bodies, const PartGroup& group) {
+EQUIDEM_ALWAYS_INLINE Standing<Lanes> standing_of(const PartBody* bodies, const ContactRows& of,
+                                                  const CellShifts& shifts) {
   Lanes way[lanes_of_pairs];
   Row<Lanes> of_i[lanes_of_pairs], of_j[lanes_of_pairs];
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    const PartBody &i = bodies[group.i[k]], &j = bodies[group.j[k]];
+    const PartBody &i = bodies[of.group.i[k]], &j = bodies[of.group.j[k]];
     way[k] = load<Lanes>(&j.centre.x) - load<Lanes>(&i.centre.x);
     of_i[k] = load<Row<Lanes>>(&i.spin);
     of_j[k] = load<Row<Lanes>>(&j.spin);
@@ -74,11 +71,15 @@ EQUIDEM_ALWAYS_INLINE Standing<Lanes> standing_of(const PartBody* bodies, const 
   s.branch = {way[0], way[1]};
   s.velocity = {way[2], way[3]};
   s.middle = {way[4], way[5]};
+  if (of.images != nullptr) {
+    s.branch = s.branch + shift_of<Lanes>(shifts.places, *of.images);
+    s.velocity = s.velocity + shift_of<Lanes>(shifts.velocities, *of.images);
+  }
   columns_of(of_i, s.spin_i, s.middle_spin_i, s.offset_i.x, s.offset_i.y);
   columns_of(of_j, s.spin_j, s.middle_spin_j, s.offset_j.x, s.offset_j.y);
   if constexpr (!round) {
-    const Bits<Lanes> ellipse_i = negative(column<Lanes>(group, PartGroup::b_i) - column<Lanes>(group, PartGroup::a_i));
-    const Bits<Lanes> ellipse_j = negative(column<Lanes>(group, PartGroup::b_j) - column<Lanes>(group, PartGroup::a_j));
+    const Bits<Lanes> ellipse_i = negative(load<Lanes>(of.shapes.b_i) - load<Lanes>(of.shapes.a_i));
+    const Bits<Lanes> ellipse_j = negative(load<Lanes>(of.shapes.b_j) - load<Lanes>(of.shapes.a_j));
     const Vectors<Lanes> any_axis{all<Lanes>(1), Lanes{}}, none{};
     s.axis_i = choose(ellipse_i, s.offset_i, any_axis);
     s.axis_j = choose(ellipse_j, s.offset_j, any_axis);
@@ -99,22 +100,22 @@ struct GeometryLanes {
 };
 
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_round_parts(const PartGroup& group, const Standing<Lanes>& s,
+EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_round_parts(const ContactRows& of, const Standing<Lanes>& s,
                                                                    const Bits<Lanes>& used) {
   Lanes bx = s.branch.x;
   const Lanes& by = s.branch.y;
   const Lanes square = square_of_branch(bx, by), distance = square_root(square);
-  const Lanes overlap = column<Lanes>(group, PartGroup::reach) - distance;
+  const Lanes overlap = load<Lanes>(of.group.reach) - distance;
   const Lanes inverse = distance * (1 / square);  // the division is independent of the root
   const Vectors<Lanes> normal{bx * inverse, by * inverse};
-  const Lanes lever = column<Lanes>(group, PartGroup::share) * distance, rest = distance - lever;
+  const Lanes lever = load<Lanes>(of.shapes.share) * distance, rest = distance - lever;
   return {used & negative(Lanes{} - overlap),
           overlap,
           normal,
           s.offset_i + lever * normal,
           s.offset_j - rest * normal,
-          column<Lanes>(group, PartGroup::a_i) - lever,
-          column<Lanes>(group, PartGroup::a_j) - rest};
+          load<Lanes>(of.shapes.a_i) - lever,
+          load<Lanes>(of.shapes.a_j) - rest};
 }
 
 /// support() of geometry/shapes.hpp.
@@ -167,17 +168,14 @@ struct HardLanes {
   PairLanes gap, normal_x, normal_y, arm_i_x, arm_i_y, arm_j_x, arm_j_y;
 };
 
-/// \param effects null: no contact has cohesion
-[[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const PartGroup& group, HardLanes& lanes,
-                                                         const ContactEffects* effects) {
+[[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const ContactRows& of, HardLanes& lanes) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     if (lanes.hard[k] == 0) continue;
-    const auto number = [&](PartGroup::Column column) { return group.numbers[column][k]; };
     const EllipseContact contact = contact_of_parts(
-        {number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
-        {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
-        {lanes.branch_x[k], lanes.branch_y[k]}, group.since[k] > PairGroup::apart,
-        {number(PartGroup::normal_x), number(PartGroup::normal_y)}, effects == nullptr ? 0 : effects->range[k]);
+        {of.shapes.a_i[k], of.shapes.b_i[k], {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
+        {of.shapes.a_j[k], of.shapes.b_j[k], {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
+        {lanes.branch_x[k], lanes.branch_y[k]}, of.group.since[k] > ContactGroup::apart,
+        {of.records.normal_x[k], of.records.normal_y[k]}, of.effects == nullptr ? 0 : of.effects->range[k]);
     lanes.gap[k] = contact.gap;
     lanes.normal_x[k] = contact.normal.x;
     lanes.normal_y[k] = contact.normal.y;
@@ -188,16 +186,15 @@ struct HardLanes {
   }
 }
 
-[[gnu::noinline]] inline void meet_by_enlarged_ellipse(const PartGroup& group, HardLanes& lanes) {
+[[gnu::noinline]] inline void meet_by_enlarged_ellipse(const ContactRows& of, HardLanes& lanes) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    const auto number = [&](PartGroup::Column column) { return group.numbers[column][k]; };
     EllipseContact contact;
     contact.gap = 1;
     if (lanes.hard[k] != 0)
-      contact = contact_by_enlarged_ellipse(
-          {number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
-          {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
-          {lanes.branch_x[k], lanes.branch_y[k]});
+      contact =
+          contact_by_enlarged_ellipse({of.shapes.a_i[k], of.shapes.b_i[k], {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
+                                      {of.shapes.a_j[k], of.shapes.b_j[k], {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
+                                      {lanes.branch_x[k], lanes.branch_y[k]});
     lanes.gap[k] = contact.gap;
     lanes.normal_x[k] = contact.normal.x;
     lanes.normal_y[k] = contact.normal.y;
@@ -221,9 +218,8 @@ EQUIDEM_ALWAYS_INLINE void store_standing(const Standing<Lanes>& s, const Bits<L
 
 /// Meet one by one where it is hard.
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lanes>& s, const Bits<Lanes>& hard,
-                                     Lanes& gap, Vectors<Lanes>& normal, Vectors<Lanes>& to_i, Vectors<Lanes>& to_j,
-                                     const ContactEffects* effects) {
+EQUIDEM_ALWAYS_INLINE void meet_hard(const ContactRows& of, const Standing<Lanes>& s, const Bits<Lanes>& hard,
+                                     Lanes& gap, Vectors<Lanes>& normal, Vectors<Lanes>& to_i, Vectors<Lanes>& to_j) {
   HardLanes lanes;
   store_standing(s, hard, lanes);
   store(gap, lanes.gap);
@@ -233,7 +229,7 @@ EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lane
   store(to_i.y, lanes.arm_i_y);
   store(to_j.x, lanes.arm_j_x);
   store(to_j.y, lanes.arm_j_y);
-  meet_one_by_one(group, lanes, effects);
+  meet_one_by_one(of, lanes);
   gap = load<Lanes>(lanes.gap);
   normal = {load<Lanes>(lanes.normal_x), load<Lanes>(lanes.normal_y)};
   to_i = {load<Lanes>(lanes.arm_i_x), load<Lanes>(lanes.arm_i_y)};
@@ -244,14 +240,13 @@ EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lane
 /// maximum. The result of a lane depends on that lane alone.
 /// \tparam cohesion contacts have a range
 template <bool cohesion, class Lanes>
-EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group, const Standing<Lanes>& s,
-                                                                const Bits<Lanes>& used, const Bits<Lanes>& alive,
-                                                                const ContactEffects* effects) {
+EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(const ContactRows& of, const Standing<Lanes>& s,
+                                                                const Bits<Lanes>& used, const Bits<Lanes>& alive) {
   constexpr int most_steps = 3;
-  const auto a_i = column<Lanes>(group, PartGroup::a_i), b_i = column<Lanes>(group, PartGroup::b_i);
-  const auto a_j = column<Lanes>(group, PartGroup::a_j), b_j = column<Lanes>(group, PartGroup::b_j);
-  const auto arrived = column<Lanes>(group, PartGroup::arrived), sharpest = column<Lanes>(group, PartGroup::sharpest);
-  const Vectors<Lanes> last{column<Lanes>(group, PartGroup::normal_x), column<Lanes>(group, PartGroup::normal_y)};
+  const auto a_i = load<Lanes>(of.shapes.a_i), b_i = load<Lanes>(of.shapes.b_i);
+  const auto a_j = load<Lanes>(of.shapes.a_j), b_j = load<Lanes>(of.shapes.b_j);
+  const auto arrived = load<Lanes>(of.shapes.arrived), sharpest = load<Lanes>(of.shapes.sharpest);
+  const Vectors<Lanes> last{load<Lanes>(of.records.normal_x), load<Lanes>(of.records.normal_y)};
   // renormalize: otherwise the round-off of the length accumulates over the steps
   const Lanes length_of_last = 1.5 - 0.5 * dot(last, last);
   Vectors<Lanes> n = choose(alive, length_of_last * last, last);
@@ -269,7 +264,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group
     per_bend = 1 / bend;
     first = slope * per_bend;
     if constexpr (cohesion) {
-      apart |= ~done & negative(load<Lanes>(effects->range) - gap);
+      apart |= ~done & negative(load<Lanes>(of.effects->range) - gap);
     } else {
       apart |= ~done & negative(Lanes{} - gap);
     }
@@ -297,15 +292,15 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group
   gap = choose(apart, gap, gap + 0.5 * first * slope);
   Vectors<Lanes> normal = choose(apart, n, shorter * n + turn * perpendicular(n));
   Vectors<Lanes> to_i = support_points(of_i, n, turn), to_j = -support_points(of_j, n, turn);
-  if (any(hard)) meet_hard(group, s, hard, gap, normal, to_i, to_j, cohesion ? effects : nullptr);
+  if (any(hard)) meet_hard(of, s, hard, gap, normal, to_i, to_j);
   // keep earlier separating directions
   const Bits<Lanes> renew = alive | hard;
-  store(choose(renew, normal.x, last.x), group.numbers[PartGroup::normal_x]);
-  store(choose(renew, normal.y, last.y), group.numbers[PartGroup::normal_y]);
+  store(choose(renew, normal.x, last.x), of.records.normal_x);
+  store(choose(renew, normal.y, last.y), of.records.normal_y);
   result.touch = used & negative(gap);
   result.overlap = -gap;
   result.normal = normal;
-  result.sunk_i = column<Lanes>(group, PartGroup::share) * result.overlap;
+  result.sunk_i = load<Lanes>(of.shapes.share) * result.overlap;
   result.sunk_j = result.overlap - result.sunk_i;
   result.arm_i = s.offset_i + to_i - result.sunk_i * normal;
   result.arm_j = s.offset_j + to_j + result.sunk_j * normal;
@@ -314,12 +309,12 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group
 
 /// contact_by_enlarged_ellipse() one by one; round parts meet as in geometry_of_round_parts().
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_enlarged_ellipses(const PartGroup& group,
+EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_enlarged_ellipses(const ContactRows& of,
                                                                          const Standing<Lanes>& s,
                                                                          const Bits<Lanes>& used) {
   HardLanes lanes;
   store_standing(s, used, lanes);
-  meet_by_enlarged_ellipse(group, lanes);
+  meet_by_enlarged_ellipse(of, lanes);
   GeometryLanes<Lanes> result;
   result.overlap = -load<Lanes>(lanes.gap);
   result.touch = used & negative(Lanes{} - result.overlap);

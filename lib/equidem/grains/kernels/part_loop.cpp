@@ -22,20 +22,19 @@ static_assert(offsetof(PartBody, middle_velocity) == 2 * sizeof(Vec2) &&
 
 using namespace eight;
 
-/// What the contacts of a list are between.
-enum class Meets { round_parts, ellipses, enlarged_ellipses, walls };
-
 struct PartLoopKind {
-  Meets meets = Meets::round_parts;
+  Between between = Between::round_parts;
   ResponseKind response;
+  bool enlarged = false;  ///< ellipses by contact_by_enlarged_ellipse()
 };
 
 template <class Lanes>
 struct PartLoopNumbers {
   LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
-  std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
+  std::int64_t now = 0;  ///< the step that is being made, as ContactGroup::since
   bool record = false;
+  CellShifts shifts;
 };
 
 template <class Lanes>
@@ -50,13 +49,12 @@ EQUIDEM_ALWAYS_INLINE Lanes slip_of(const Standing<Lanes>& s, const Vectors<Lane
 }
 
 template <PartLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbers, const PartGroup& group) {
+EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbers, const ContactRows& of) {
   if constexpr (kind.response.equal) {
     return numbers.law;
   } else {
-    return {numbers.dt * column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
-            sliding_law(column<Lanes>(group, PartGroup::friction),
-                        column<Lanes>(group, PartGroup::tangential_stiffness), numbers.dt)};
+    return {numbers.dt * load<Lanes>(of.laws.stiffness), load<Lanes>(of.laws.least),
+            sliding_law(load<Lanes>(of.laws.friction), load<Lanes>(of.laws.tangential_stiffness), numbers.dt)};
   }
 }
 
@@ -67,38 +65,38 @@ struct Levers {
 };
 
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE Vectors<Lanes> vectors(const PartGroup& group, PartGroup::Column x, PartGroup::Column y) {
-  return {column<Lanes>(group, x), column<Lanes>(group, y)};
+EQUIDEM_ALWAYS_INLINE Vectors<Lanes> vectors(const PairLanes& x, const PairLanes& y) {
+  return {load<Lanes>(x), load<Lanes>(y)};
 }
 
 /// \param drift velocities over the drift in Verlet schemes: of walls not those at the instant
 /// \param[in,out] levers of walls with across_i
 template <PartLoopKind parts, class Lanes>
-EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const PartGroup& group, const Standing<Lanes>& s,
+EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const ContactRows& of, const Standing<Lanes>& s,
                                                      const Standing<Lanes>& drift, const GeometryLanes<Lanes>& found,
                                                      const Vectors<Lanes>& normal_before,
                                                      const ContactChanges<Lanes>& at, Levers<Lanes>& levers) {
   constexpr ResponseKind kind = parts.response;
   const Vectors<Lanes>& n = found.normal;
-  if constexpr (parts.meets != Meets::walls) {
+  if constexpr (parts.between != Between::walls) {
     levers.across_i = cross(found.arm_i, n);
     levers.across_j = cross(found.arm_j, n);
   }
-  const auto inverse_mass = column<Lanes>(group, PartGroup::inverse_mass);
-  const auto turning_i = column<Lanes>(group, PartGroup::inverse_moment_i);
-  const auto turning_j = column<Lanes>(group, PartGroup::inverse_moment_j);
+  const auto inverse_mass = 2 * load<Lanes>(of.group.half_mobility);
+  const auto turning_i = load<Lanes>(of.shapes.inverse_moment_i);
+  const auto turning_j = load<Lanes>(of.shapes.inverse_moment_j);
   ContactMotion<Lanes> motion;
   motion.overlap = found.overlap;
   motion.closing = -(dot(s.velocity, n) + (s.spin_j * levers.across_j - s.spin_i * levers.across_i));
   Vectors<Lanes> arm_i_before, arm_j_before;
   if constexpr (kind.verlet) {
     // over the drift, from the places at both ends of it
-    arm_i_before = vectors<Lanes>(group, PartGroup::arm_i_x, PartGroup::arm_i_y);
-    arm_j_before = vectors<Lanes>(group, PartGroup::arm_j_x, PartGroup::arm_j_y);
+    arm_i_before = vectors<Lanes>(of.shapes.arm_i_x, of.shapes.arm_i_y);
+    arm_j_before = vectors<Lanes>(of.shapes.arm_j_x, of.shapes.arm_j_y);
     const Lanes here = closing_of(drift, n, found.arm_i, found.arm_j);
     const Lanes there = choose(at.begun, here, closing_of(drift, normal_before, arm_i_before, arm_j_before));
     motion.mean_closing = choose(at.ended, there, 0.5 * (here + there));
-    motion.overlap_before = larger(column<Lanes>(group, PartGroup::overlap), Lanes{});
+    motion.overlap_before = larger(load<Lanes>(of.records.overlap), Lanes{});
   } else {
     motion.half_mobility = 0.5 * (inverse_mass + levers.across_i * levers.across_i * turning_i +
                                   levers.across_j * levers.across_j * turning_j);
@@ -136,16 +134,16 @@ EQUIDEM_ALWAYS_INLINE std::int32_t body_of(const std::int32_t* body_of_part, std
 }
 
 /// Discs at lines here, all others by geometry_with_wall(). Lanes without a contact, and covered ones, are apart.
-inline void measure_walls(const GrainSystem& system, const PartGroup& group, const std::int32_t* body_of_part,
+inline void measure_walls(const GrainSystem& system, const ContactRows& of, const std::int32_t* body_of_part,
                           WallLanes& found) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     found.overlap[k] = -std::numeric_limits<double>::max();  // beyond any range
     found.normal_x[k] = found.normal_y[k] = found.arm_x[k] = found.arm_y[k] = found.across[k] = 0;
-    if (group.since[k] == PairGroup::unused || group.numbers[PartGroup::covered][k] != 0) continue;
-    const auto w = static_cast<std::size_t>(group.j[k]);
+    if (of.group.since[k] == ContactGroup::unused || of.shapes.covered[k] != 0) continue;
+    const auto w = static_cast<std::size_t>(of.group.j[k]);
     const Wall& wall = system.scene.walls[w];
     if (body_of_part == nullptr && wall.shape == Wall::Shape::line) {
-      const auto i = static_cast<std::size_t>(group.i[k]);
+      const auto i = static_cast<std::size_t>(of.group.i[k]);
       const double radius = system.bodies.constants[i].radius;
       const Vec2 from = system.bodies.motions[i].position - system.walls.places[w].displacement - wall.point;
       found.overlap[k] = radius - dot(wall.normal, from);
@@ -155,9 +153,9 @@ inline void measure_walls(const GrainSystem& system, const PartGroup& group, con
       found.arm_y[k] = radius * found.normal_y[k];
       continue;
     }
-    const bool touching = group.since[k] > PairGroup::apart;
-    const Vec2 normal{group.numbers[PartGroup::normal_x][k], group.numbers[PartGroup::normal_y][k]};
-    const PartGeometry geometry = geometry_with_wall(system, group.i[k], w, touching ? normal : Vec2{});
+    const bool touching = of.group.since[k] > ContactGroup::apart;
+    const Vec2 normal{of.records.normal_x[k], of.records.normal_y[k]};
+    const PartGeometry geometry = geometry_with_wall(system, of.group.i[k], w, touching ? normal : Vec2{});
     found.overlap[k] = geometry.overlap;
     found.normal_x[k] = geometry.normal.x;
     found.normal_y[k] = geometry.normal.y;
@@ -169,25 +167,25 @@ inline void measure_walls(const GrainSystem& system, const PartGroup& group, con
 
 /// \tparam verlet else semi-implicit Euler
 template <bool verlet>
-inline void find_velocities_at_walls(const GrainSystem& system, const PartGroup& group,
-                                     const std::int32_t* body_of_part, WallLanes& found) {
+inline void find_velocities_at_walls(const GrainSystem& system, const ContactRows& of, const std::int32_t* body_of_part,
+                                     WallLanes& found) {
   const Vec2 half_fall = (0.5 * system.dt()) * system.scene.gravity;
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    const auto part = static_cast<std::size_t>(group.i[k]);
-    const auto i = static_cast<std::size_t>(body_of(body_of_part, group.i[k]));
+    const auto part = static_cast<std::size_t>(of.group.i[k]);
+    const auto i = static_cast<std::size_t>(body_of(body_of_part, of.group.i[k]));
     const GrainMotion& motion = system.bodies.motions[i];
-    const WallPlace& wall = system.walls.places[group.since[k] == PairGroup::unused ? 0 : group.j[k]];
+    const WallPlace& wall = system.walls.places[of.group.since[k] == ContactGroup::unused ? 0 : of.group.j[k]];
     const Vec2 velocity = wall.acting_velocity - motion.velocity;
     Vec2 other = wall.passed_velocity - motion.velocity;
     double spin = motion.spin;
     if constexpr (!verlet) {
       // all that other forces do to the velocity of the body in the step, gravity included: as in the last step
       const bool discs = body_of_part == nullptr;
-      const Vec2 middle = discs ? system.contacts.near.bodies[i].middle_velocity
-                                : system.contacts.near_parts.bodies[part].middle_velocity;
+      const Vec2 middle =
+          discs ? system.contacts.pairs.bodies[i].middle_velocity : system.contacts.parts.bodies[part].middle_velocity;
       other = wall.acting_velocity - (middle + half_fall);
-      spin = discs ? system.contacts.near.bodies[i].middle_rim_speed / system.bodies.constants[i].radius
-                   : system.contacts.near_parts.bodies[part].middle_spin;
+      spin = discs ? system.contacts.pairs.bodies[i].middle_rim_speed / system.bodies.constants[i].radius
+                   : system.contacts.parts.bodies[part].middle_spin;
     }
     found.u[k] = velocity.x;
     found.v[k] = velocity.y;
@@ -201,15 +199,15 @@ inline void find_velocities_at_walls(const GrainSystem& system, const PartGroup&
 /// The impulses of bodies on walls, those of a Verlet drift half of each of the kicks at its ends.
 /// \param kicks on the walls, N s, and couples, N m s
 template <bool verlet>
-inline void push_walls(const GrainSystem& system, const PartGroup& group, const std::int32_t* body_of_part,
+inline void push_walls(const GrainSystem& system, const ContactRows& of, const std::int32_t* body_of_part,
                        const std::int64_t (&acts)[lanes_of_pairs], const PairLanes (&kicks)[3],
                        const PairLanes (&arms)[2], BlockSums& sums) {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     if (acts[k] == 0) continue;
-    const auto i = static_cast<std::size_t>(body_of(body_of_part, group.i[k]));
+    const auto i = static_cast<std::size_t>(body_of(body_of_part, of.group.i[k]));
     const Vec2 point = system.bodies.motions[i].position + Vec2{arms[0][k], arms[1][k]};
-    const WallPlace& wall = system.walls.places[group.j[k]];
-    push_wall(system, ~group.j[k], point, {kicks[0][k], kicks[1][k]},
+    const WallPlace& wall = system.walls.places[of.group.j[k]];
+    push_wall(system, ~of.group.j[k], point, {kicks[0][k], kicks[1][k]},
               verlet ? wall.passed_velocity : wall.acting_velocity, sums.sums(), kicks[2][k]);
   }
 }
@@ -217,42 +215,43 @@ inline void push_walls(const GrainSystem& system, const PartGroup& group, const 
 /// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
 template <class Law, PartLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, GrainSystem& system,
-                                         const Receivers& to, PartGroup& group, ContactEffects* effects,
-                                         BodyImpulse*& outward, LaneSums<Lanes>& sums, BlockSums& block) {
-  constexpr bool verlet = kind.response.verlet, walls = kind.meets == Meets::walls;
+                                         const Receivers& to, const ContactRows& of, BodyImpulse*& outward,
+                                         LaneSums<Lanes>& sums, BlockSums& block) {
+  constexpr bool verlet = kind.response.verlet, walls = kind.between == Between::walls;
   const double dt = numbers.dt;
-  const auto since = load<Bits<Lanes>>(group.since);
-  const Bits<Lanes> used = ~((since - PairGroup::apart) >> 63), alive = ~(since >> 63);
-  const Vectors<Lanes> normal_before = vectors<Lanes>(group, PartGroup::normal_x, PartGroup::normal_y);
+  const auto since = load<Bits<Lanes>>(of.group.since);
+  const Bits<Lanes> used = ~((since - ContactGroup::apart) >> 63), alive = ~(since >> 63);
+  const Vectors<Lanes> normal_before = vectors<Lanes>(of.records.normal_x, of.records.normal_y);
   Standing<Lanes> s, drift;
   GeometryLanes<Lanes> found;
   Levers<Lanes> levers;
   EffectLanes<Lanes> effect_lanes;
-  if constexpr (kind.response.cohesion) effect_lanes.cohesion = cohesion_lanes<Lanes>(*effects);
+  if constexpr (kind.response.cohesion) effect_lanes.cohesion = cohesion_lanes<Lanes>(*of.effects);
   WallLanes at_walls;
   if constexpr (walls) {
-    measure_walls(system, group, to.bodies, at_walls);
+    measure_walls(system, of, to.bodies, at_walls);
     found.overlap = load<Lanes>(at_walls.overlap);
     found.touch = negative(Lanes{} - found.overlap);
   } else {
-    s = standing_of<kind.meets == Meets::round_parts, Lanes>(system.contacts.near_parts.bodies.data(), group);
-    if constexpr (kind.meets == Meets::round_parts) {
-      found = geometry_of_round_parts(group, s, used);
-    } else if constexpr (kind.meets == Meets::ellipses) {
-      found = geometry_of_ellipses<kind.response.cohesion>(group, s, used, alive, effects);
+    s = standing_of<kind.between == Between::round_parts, Lanes>(system.contacts.parts.bodies.data(), of,
+                                                                 numbers.shifts);
+    if constexpr (kind.between == Between::round_parts) {
+      found = geometry_of_round_parts(of, s, used);
+    } else if constexpr (kind.enlarged) {
+      found = geometry_of_enlarged_ellipses(of, s, used);
     } else {
-      found = geometry_of_enlarged_ellipses(group, s, used);
+      found = geometry_of_ellipses<kind.response.cohesion>(of, s, used, alive);
     }
   }
   if constexpr (kind.response.cohesion)
     found.touch = used & negative(Lanes{} - (found.overlap + effect_lanes.cohesion.range));
   ContactChanges<Lanes> at;
-  if (!begin_and_end(found.touch, numbers.now, group.since, at, sums)) {
-    if (outward) give_nothing<true>(group.j, to, outward);
+  if (!begin_and_end(found.touch, numbers.now, of.group.since, at, sums)) {
+    if (outward) give_nothing<true>(of.group.j, to, outward);
     return;
   }
   if constexpr (walls) {
-    find_velocities_at_walls<verlet>(system, group, to.bodies, at_walls);
+    find_velocities_at_walls<verlet>(system, of, to.bodies, at_walls);
     const Vectors<Lanes> other{load<Lanes>(at_walls.other_u), load<Lanes>(at_walls.other_v)};
     s = Standing<Lanes>{};
     s.velocity = {load<Lanes>(at_walls.u), load<Lanes>(at_walls.v)};
@@ -268,27 +267,24 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     levers.across_i = load<Lanes>(at_walls.across);
     levers.across_j = Lanes{};
   }
-  const ContactMotion<Lanes> motion = motion_of<kind>(group, s, walls ? drift : s, found, normal_before, at, levers);
+  const ContactMotion<Lanes> motion = motion_of<kind>(of, s, walls ? drift : s, found, normal_before, at, levers);
   sums.deepest = larger(only(at.touch, motion.overlap), sums.deepest);
   Lanes slip_dashpot;
   if constexpr (kind.response.friction)
-    slip_dashpot = dt * column<Lanes>(group, PartGroup::tangential_damping) * square_root(1 / levers.at_rim);
-  const ContactMemory<Lanes> before{column<Lanes>(group, PartGroup::impulse),
-                                    column<Lanes>(group, PartGroup::tangential_impulse),
-                                    column<Lanes>(group, PartGroup::stretch),
-                                    {}};
+    slip_dashpot = dt * load<Lanes>(of.slips.dashpot) * square_root(1 / levers.at_rim);
+  const ContactMemory<Lanes> before{
+      load<Lanes>(of.group.impulse), load<Lanes>(of.slips.impulse), load<Lanes>(of.slips.stretch), {}};
   ContactMemory<Lanes> memory = before;
   Lanes couple_before{};
   if constexpr (kind.response.rolling) {
-    const auto lever = load<Lanes>(effects->lever);
+    const auto lever = load<Lanes>(of.effects->lever);
     const Lanes turning = kind.response.verlet ? s.spin_j - s.spin_i : s.middle_spin_j - s.middle_spin_i;
-    effect_lanes.rolling = rolling_lanes(*effects, lever * turning, dt);
-    memory.rolling = rolling_memory<Lanes>(*effects);
+    effect_lanes.rolling = rolling_lanes(*of.effects, lever * turning, dt);
+    memory.rolling = rolling_memory<Lanes>(*of.effects);
     couple_before = lever * memory.rolling.impulse;
   }
-  const ContactLosses<Lanes> losses =
-      respond<Law, kind.response>(law_of<kind>(numbers, group), dt * column<Lanes>(group, PartGroup::dashpot),
-                                  slip_dashpot, motion, at, dt, effect_lanes, memory);
+  const ContactLosses<Lanes> losses = respond<Law, kind.response>(
+      law_of<kind>(numbers, of), load<Lanes>(of.group.dashpot), slip_dashpot, motion, at, dt, effect_lanes, memory);
   add_losses<kind.response>(losses, effect_lanes.rolling.lost, at.any, sums);
   const Vectors<Lanes> n = found.normal, t = perpendicular(n);
   Vectors<Lanes> push = memory.impulse * n;
@@ -300,12 +296,13 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
   }
   Lanes couple{};
   if constexpr (kind.response.rolling) {
-    couple = load<Lanes>(effects->lever) * memory.rolling.impulse;
+    couple = load<Lanes>(of.effects->lever) * memory.rolling.impulse;
     torque_i += couple;
     torque_j += couple;
-    store(memory.rolling, *effects);
+    store(memory.rolling, *of.effects);
   }
   push = {only(at.touch, push.x), only(at.touch, push.y)};
+  if (!walls && of.images != nullptr) add_on_images(push.x, push.y, *of.images, sums);
   if constexpr (walls) {
     Vectors<Lanes> kicks = push, arms = found.arm_i;
     Bits<Lanes> acts = at.touch;
@@ -315,7 +312,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
       acts = at.touch | at.ended;
       kicks = {0.5 * (kicks.x + only(at.alive, kicks_before.x)), 0.5 * (kicks.y + only(at.alive, kicks_before.y))};
       couple = 0.5 * (couple + only(at.alive, couple_before));
-      arms = choose(at.ended, vectors<Lanes>(group, PartGroup::arm_i_x, PartGroup::arm_i_y), arms);
+      arms = choose(at.ended, vectors<Lanes>(of.shapes.arm_i_x, of.shapes.arm_i_y), arms);
     }
     std::int64_t which[lanes_of_pairs];
     PairLanes on_walls[3], to_points[2];
@@ -325,35 +322,35 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     store(couple, on_walls[2]);
     store(arms.x, to_points[0]);
     store(arms.y, to_points[1]);
-    push_walls<verlet>(system, group, to.bodies, which, on_walls, to_points, block);
+    push_walls<verlet>(system, of, to.bodies, which, on_walls, to_points, block);
   }
-  store(memory.impulse, group.numbers[PartGroup::impulse]);
-  store(memory.tangential, group.numbers[PartGroup::tangential_impulse]);
-  if constexpr (kind.response.friction) store(memory.stretch, group.numbers[PartGroup::stretch]);
+  store(memory.impulse, of.group.impulse);
+  store(memory.tangential, of.slips.impulse);
+  if constexpr (kind.response.friction) store(memory.stretch, of.slips.stretch);
   if (walls || verlet || numbers.record) {
-    store(found.overlap, group.numbers[PartGroup::overlap]);
-    store(motion.closing, group.numbers[PartGroup::closing]);
-    store(found.arm_i.x, group.numbers[PartGroup::arm_i_x]);
-    store(found.arm_i.y, group.numbers[PartGroup::arm_i_y]);
-    store(found.arm_j.x, group.numbers[PartGroup::arm_j_x]);
-    store(found.arm_j.y, group.numbers[PartGroup::arm_j_y]);
-    if constexpr (kind.meets != Meets::ellipses) {
-      store(n.x, group.numbers[PartGroup::normal_x]);
-      store(n.y, group.numbers[PartGroup::normal_y]);
+    store(found.overlap, of.records.overlap);
+    store(motion.closing, of.records.closing);
+    store(found.arm_i.x, of.shapes.arm_i_x);
+    store(found.arm_i.y, of.shapes.arm_i_y);
+    store(found.arm_j.x, of.shapes.arm_j_x);
+    store(found.arm_j.y, of.shapes.arm_j_y);
+    if constexpr (kind.between != Between::ellipses || kind.enlarged) {
+      store(n.x, of.records.normal_x);
+      store(n.y, of.records.normal_y);
     }
   }
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(push.x, push.y, only(at.touch, torque_i), Lanes{}, on_i);
   if constexpr (walls) {
-    for (std::size_t k = 0; k < lanes_of_pairs; ++k) subtract(&to.impulses[to.of(group.i[k])], on_i[k]);
+    for (std::size_t k = 0; k < lanes_of_pairs; ++k) subtract(&to.impulses[to.of(of.group.i[k])], on_i[k]);
   } else {
     Row<Lanes> on_j[lanes_of_pairs];
     rows_of(push.x, push.y, only(at.touch, torque_j), Lanes{}, on_j);
     const auto of_j = [&](std::size_t k) { return on_j[k]; };
     if (outward) {
-      scatter<true>(group.i, group.j, to, outward, on_i, of_j);
+      scatter<true>(of.group.i, of.group.j, to, outward, on_i, of_j);
     } else {
-      scatter<false>(group.i, group.j, to, outward, on_i, of_j);
+      scatter<false>(of.group.i, of.group.j, to, outward, on_i, of_j);
     }
   }
 }
@@ -361,54 +358,55 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
 template <class Law, PartLoopKind kind>
 struct CollideParts {
   template <class Lanes>
-  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearParts::List& list, std::size_t block);
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearList& list, std::size_t block);
 };
 
 template <class Law, PartLoopKind kind>
 template <class Lanes>
-void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
-  const PairLaw law = system.contacts.near_parts.law.value_or(PairLaw{});
+void CollideParts<Law, kind>::run(GrainSystem& system, NearList& list, std::size_t block) {
+  const PairLaw law = system.contacts.law.value_or(PairLaw{});
   const PartLoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
                                         sliding_law(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
                                                     all<Lanes>(1 / law.tangential_stiffness), system.dt())},
                                        system.dt(),
                                        system.step + (kind.response.verlet ? 0 : 1),
-                                       system.contacts.near.record};
+                                       system.contacts.record,
+                                       CellShifts(system.cell)};
   LaneSums<Lanes> sums;
   const bool shapes = !system.shapes.parts.empty();
   const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),
                      shapes ? system.shapes.body_of_part.data() : nullptr};
   BodyImpulse *outward = list.outward.impulses.data(), *none = nullptr;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
-    collide_group<Law, kind>(numbers, system, to, list.groups[g], effects_at<kind.response>(list.effects.data(), g),
-                             g < list.first_outward ? none : outward, sums, system.bodies.sums[block]);
+    collide_group<Law, kind>(numbers, system, to, list.rows(g), g < list.first_outward ? none : outward, sums,
+                             system.bodies.sums[block]);
   }
   add(sums, system.bodies.sums[block]);
 }
 
-template <class Law, Meets meets, ResponseKind kind>
-NearParts::Loop choose_part_loop() {
-  return by_vector_width<CollideParts<Law, PartLoopKind{meets, kind}>, GrainSystem&, NearParts::List&, std::size_t>();
+template <class Law, PartLoopKind kind>
+NearLists::Loop choose_part_loop() {
+  return by_vector_width<CollideParts<Law, kind>, GrainSystem&, NearList&, std::size_t>();
 }
 
-template <class Law, Meets meets, bool verlet>
-NearParts::Loop choose_part_loop(const GrainSystem& system) {
-  if constexpr (meets != Meets::enlarged_ellipses)
-    if (system.has_effects()) return choose_part_loop<Law, meets, with_effects<verlet>>();
-  if constexpr (meets == Meets::round_parts || meets == Meets::ellipses) {
-    if (system.friction && system.contacts.near_parts.law)
-      return choose_part_loop<Law, meets, ResponseKind{true, verlet, true, false}>();
+template <class Law, Between between, bool verlet, bool enlarged>
+NearLists::Loop choose_part_loop(const GrainSystem& system) {
+  if constexpr (!enlarged)
+    if (system.has_effects()) return choose_part_loop<Law, PartLoopKind{between, with_effects<verlet>}>();
+  if constexpr (!enlarged && between != Between::walls) {
+    if (system.friction && system.contacts.law)
+      return choose_part_loop<Law, PartLoopKind{between, {true, verlet, true, false}}>();
   }
-  return system.friction ? choose_part_loop<Law, meets, ResponseKind{true, verlet, false, false}>()
-                         : choose_part_loop<Law, meets, ResponseKind{false, verlet, false, false}>();
+  return system.friction ? choose_part_loop<Law, PartLoopKind{between, {true, verlet, false, false}, enlarged}>()
+                         : choose_part_loop<Law, PartLoopKind{between, {false, verlet, false, false}, enlarged}>();
 }
 
-template <Meets meets>
-NearParts::Loop loop_for(const GrainSystem& system) {
-  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::Loop {
+template <Between between, bool enlarged = false>
+NearLists::Loop loop_for(const GrainSystem& system) {
+  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearLists::Loop {
     if constexpr (Law::facts.kind == LawKind::force) {
-      return system.options.verlet() ? choose_part_loop<Law, meets, true>(system)
-                                     : choose_part_loop<Law, meets, false>(system);
+      return system.options.verlet() ? choose_part_loop<Law, between, true, enlarged>(system)
+                                     : choose_part_loop<Law, between, false, enlarged>(system);
     } else {
       return nullptr;
     }
@@ -417,15 +415,11 @@ NearParts::Loop loop_for(const GrainSystem& system) {
 
 }  // namespace
 
-NearParts::Loop loop_of_round_parts(const GrainSystem& system) {
-  return loop_for<Meets::round_parts>(system);
-}
-NearParts::Loop loop_of_ellipses(const GrainSystem& system) {
-  return system.options.ellipse_law == GrainOptions::EllipseLaw::exact ? loop_for<Meets::ellipses>(system)
-                                                                       : loop_for<Meets::enlarged_ellipses>(system);
-}
-NearParts::Loop loop_of_walls(const GrainSystem& system) {
-  return loop_for<Meets::walls>(system);
+NearLists::Loop loop_of_parts(const GrainSystem& system, Between between) {
+  if (between == Between::walls) return loop_for<Between::walls>(system);
+  if (between == Between::round_parts) return loop_for<Between::round_parts>(system);
+  return system.options.ellipse_law == GrainOptions::EllipseLaw::exact ? loop_for<Between::ellipses>(system)
+                                                                       : loop_for<Between::ellipses, true>(system);
 }
 
 }  // namespace equidem

@@ -31,15 +31,17 @@ struct LaneSums {
   double released = 0;          ///< by contacts that ended
   Lanes deepest{};
   Bits<Lanes> evaluations{}, begun{};
+  Row<Lanes> on_images{};  ///< as ImageImpulses, contact by contact, too
 };
 
 using simd::add;
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE void add(const LaneSums<Lanes>& sums, BlockSums& block) {
-  double lost[4];
+  double lost[4], on_images[4];
   PairLanes deepest;
   std::int64_t evaluations[lanes_of_pairs], begun[lanes_of_pairs];
   store(sums.lost, lost);
+  store(sums.on_images, on_images);
   store(sums.deepest, deepest);
   store(sums.evaluations, evaluations);
   store(sums.begun, begun);
@@ -48,6 +50,7 @@ EQUIDEM_ALWAYS_INLINE void add(const LaneSums<Lanes>& sums, BlockSums& block) {
   block.lost.lost_tangential_dashpot += lost[2];
   block.lost.lost_rolling += lost[3];
   block.lost.lost_release += sums.released;
+  block.on_images += {{on_images[0], on_images[1]}, {on_images[2], on_images[3]}};
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     block.evaluations += evaluations[k];
     block.contacts += begun[k];
@@ -189,11 +192,38 @@ EQUIDEM_ALWAYS_INLINE bool begin_and_end(const Bits<Lanes>& touch, std::int64_t 
   at.begun = touch & ~at.alive;
   at.ended = at.alive & ~touch;
   if (at.any) {
-    store(choose(at.begun, all<Bits<Lanes>>(now), choose(at.ended, all<Bits<Lanes>>(PairGroup::apart), before)), since);
+    store(choose(at.begun, all<Bits<Lanes>>(now), choose(at.ended, all<Bits<Lanes>>(ContactGroup::apart), before)),
+          since);
     sums.begun -= at.begun;
   }
   sums.evaluations -= touch;
   return true;
+}
+
+/// Periods of a cell, and the velocities to images by one of each.
+struct CellShifts {
+  Periods places, velocities;
+
+  explicit CellShifts(const MovingCell& cell) : places(cell.now) {
+    if (cell.deforms) velocities = {cell.gradient * cell.before.a, cell.gradient * cell.before.b};
+  }
+};
+
+/// From the second bodies to their images.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Vectors<Lanes> shift_of(const Periods& periods, const PairImages& images) {
+  const auto a = load<Lanes>(images.a), b = load<Lanes>(images.b);
+  return {a * periods.a.x + b * periods.b.x, a * periods.a.y + b * periods.b.y};
+}
+
+/// Add impulses (x, y) on images.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE void add_on_images(const Lanes& x, const Lanes& y, const PairImages& images,
+                                         LaneSums<Lanes>& sums) {
+  const auto a = load<Lanes>(images.a), b = load<Lanes>(images.b);
+  Row<Lanes> rows[lanes_of_pairs];
+  rows_of(x * a, y * a, x * b, y * b, rows);
+  for (const Row<Lanes>& row : rows) sums.on_images += row;
 }
 
 /// Where the impulses of a block go.

@@ -9,7 +9,6 @@
 #include "equidem/contact/restitution.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -103,7 +102,7 @@ void find_dissipations(GrainSystem& system) {
 ContactConstants constants_of(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   static constexpr GrainBody wall{};
   const GrainBody& bi = system.bodies.constants[i];
-  const GrainBody& bj = j >= 0 ? system.bodies.constants[system.body_of(j)] : wall;
+  const GrainBody& bj = j >= 0 ? system.bodies.constants[j] : wall;
   const double inverse_mass = bi.inverse_mass + bj.inverse_mass;
   const PairProperties& properties = system.properties(i, j);
   const double dt = system.dt(), length_factor = system.law().length_factor(system.length);
@@ -174,48 +173,59 @@ void find_single_contacts(GrainSystem& system, const NeighbourList& list) {
     for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
       const WallContact contact =
           nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
-      if (contact.distance <= system.bodies.constants[i].radius + system.contacts.margin)
+      if (contact.distance <= system.bodies.constants[i].radius + system.contacts.skin.margin)
         add(i, ~static_cast<std::int32_t>(w));
     }
   }
 }
 
+void find_neighbours(ContactList& contacts, const MovingCell& cell, double margin) {
+  if (!cell.active) {
+    contacts.neighbours = &contacts.finder.within(contacts.circles, margin);
+    return;
+  }
+  NeighbourList& list = contacts.in_cell;
+  std::vector<PeriodicImage>& images = contacts.images;
+  list.begin.assign(contacts.circles.size() + 1, 0);
+  images.clear();
+  for (const CirclePair& pair : contacts.finder_in_cell.within(contacts.circles, cell.now, margin)) {
+    if (pair.i == pair.j.body) continue;  // a body is far from its own images
+    ++list.begin[pair.i + 1];
+    images.push_back(pair.j);
+  }
+  for (std::size_t k = 1; k < list.begin.size(); ++k) {
+    list.begin[k] += list.begin[k - 1];
+    std::sort(images.begin() + list.begin[k - 1], images.begin() + list.begin[k]);
+  }
+  contacts.neighbours = &list;
+}
+
 }  // namespace
 
 void find_candidates(GrainSystem& system) {
-  std::vector<Circle>& circles = system.contacts.circles;
+  ContactList& contacts = system.contacts;
+  std::vector<Circle>& circles = contacts.circles;
   circles.clear();
-  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i)
     circles.push_back({system.bodies.motions[i].position, system.bodies.constants[i].radius});
-  }
-  if (system.meets_images()) {
-    find_images(system);
-    for (const PeriodicImage& image : system.cell.images) {
-      const Circle& body = circles[image.body];
-      circles.push_back({body.centre + system.cell.now.shift(image), body.radius});
-    }
-  }
-  const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin + system.range);
-  if (!gives_force(system.options.law)) find_single_contacts(system, list);
-  find_near_walls(system);
+  find_neighbours(contacts, system.cell, contacts.skin.margin + system.range);
+  if (!gives_force(system.options.law)) find_single_contacts(system, *contacts.neighbours);
+  find_near_lists(system);
   cover_joints(system);
-  system.contacts.near.outer = &list;
-  if (system.contacts.near.active) find_near_pairs(system, std::sqrt(system.longest_way));
-  if (system.contacts.near_parts.active) find_near_parts(system, reach_of(system));
-  system.contacts.moved = 0;
+  contacts.skin.moved = 0;
   ++system.counters.rebuilds;
 }
 
 bool refresh_candidates(GrainSystem& system, double reach) {
-  if (2 * (system.contacts.moved + reach) <= system.contacts.margin) {
-    system.contacts.moved += reach;
-    if (system.contacts.near.active) refresh_near_pairs(system, reach);
-    if (system.contacts.near_parts.active) refresh_near_parts(system, reach);
+  ContactList& contacts = system.contacts;
+  if (contacts.skin.holds(reach)) {
+    contacts.skin.moved += reach;
+    refresh_near_lists(system, reach);
     return false;
   }
-  system.contacts.margin = std::max(system.contacts.base_margin, 8 * reach);
+  contacts.skin.margin = std::max(contacts.base_margin, 8 * reach);
   find_candidates(system);
-  system.contacts.moved = system.contacts.near.moved = system.contacts.near_parts.moved = reach;
+  contacts.skin.moved = contacts.pairs.skin.moved = contacts.parts.skin.moved = reach;
   return true;
 }
 

@@ -2,13 +2,13 @@
 #include "equidem/grains/neighbours/near_pairs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
-#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
@@ -17,182 +17,281 @@ namespace {
 /// many cost as much as lists found anew.
 constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
-PairLaw law_of(const ContactConstants& constants) {
-  return {constants.stiffness, constants.least, constants.sliding.coefficient, constants.sliding.stiffness};
+/// Of bodies of a size (discs: the radius) that move by about `reach` in a step.
+double margin_of(const GrainSystem& system, double size, double reach) {
+  const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
+  return std::min(wanted, system.contacts.skin.margin);
 }
 
-/// All kinds except those of walls only.
-std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
-  std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
-  for (const Wall& wall : scene.walls) of_walls[wall.kind] = true;
-  for (const Grain& grain : scene.present()) met[grain.kind] = true;
-  for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];
-  std::vector<const PairProperties*> pairs;
-  for (int a = 0; a < scene.kinds; ++a) {
-    for (int b = 0; b < scene.kinds; ++b) {
-      if (met[a] && met[b]) pairs.push_back(&scene.between(a, b));
-    }
-  }
-  return pairs;
-}
-
-NewList<PairBlock> new_list(const GrainSystem& system, PairBlock& block, std::size_t b) {
-  block.friction = system.friction;
-  block.equal = system.contacts.near.equal;
-  block.has_effects = system.has_effects();
-  return {block, system.bodies.blocks.end(b), nullptr};
-}
-
-/// Set the constants of a new pair, which is apart.
-void set_constants(const GrainSystem& system, PairBlock& block, std::size_t p) {
-  const std::size_t k = p % lanes_of_pairs;
-  const std::int32_t i = block.first(p), j = system.body_of(block.second(p));
-  const ContactConstants constants = constants_of(system, i, j);
-  const GrainBody &bi = system.bodies.constants[i], &bj = system.bodies.constants[j];
-  PairGroup& group = block.groups.back();
-  group.reach[k] = bi.radius + bj.radius;
-  group.dashpot[k] = constants.dashpot() * system.dt();
-  group.half_mobility[k] = 0.5 * (bi.inverse_mass + bj.inverse_mass);
-  group.impulse[k] = 0;
-  if (block.friction) {
-    const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
-    PairSlips& slips = block.slips.back();
-    slips.half_turning[k] = 0.5 * (share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment);
-    slips.dashpot[k] = constants.sliding.dashpot * system.dt();
-    slips.stretch[k] = slips.impulse[k] = 0;
-  }
-  if (block.has_effects)
-    block.effects.back().set(k, effects_between(system, i, j, constants.stiffness),
-                             {bi.radius, bj.radius, bi.inverse_moment, bj.inverse_moment}, system.dt());
-  if (block.equal) return;
-  const PairLaw law = law_of(constants);
-  PairLaws& laws = block.laws.back();
-  laws.stiffness[k] = law.stiffness;
-  laws.least[k] = law.least;
-  laws.friction[k] = law.friction;
-  laws.tangential_stiffness[k] = law.tangential_stiffness;
-}
-
-/// Whether a body of a periodic cell is bonded to another one, or to that image of it.
-bool is_bonded_image(const GrainSystem& system, std::int32_t i, std::int32_t partner) {
-  const std::int32_t j = system.body_of(partner);
-  const auto bond = place_of_bond(system.bonds.tied, i, j);
-  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j || bond->broken) return false;
-  const PeriodicImage image = system.is_image(partner) ? system.image(partner) : PeriodicImage{};
-  return bond->image.a == image.a && bond->image.b == image.b;
+/// Whether a body of a periodic cell is bonded to that image of another one.
+bool is_bonded_image(const GrainSystem& system, std::int32_t i, const PeriodicImage& j) {
+  const auto bond = place_of_bond(system.bonds.tied, i, j.body);
+  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j.body || bond->broken) return false;
+  return bond->image.a == j.a && bond->image.b == j.b;
 }
 
 void find_pairs_of_block(GrainSystem& system, std::size_t b) {
-  const NeighbourList& list = *system.contacts.near.outer;
-  NearPairs& near = system.contacts.near;
+  const NeighbourList& list = *system.contacts.neighbours;
   const BodyBlocks& blocks = system.bodies.blocks;
-  PairBlock& block = near.blocks[b];
-  NewList<PairBlock> pairs = new_list(system, block, b);
+  NewList pairs(system, system.contacts.of(Between::discs).blocks[b], b);
   const bool shapes = !system.shapes.parts.empty();
   std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(blocks.begin(b)));
   for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
     const Vec2 centre = system.bodies.motions[i].position;
-    const double own = system.bodies.constants[i].radius + near.margin + system.range;
+    const double own = system.bodies.constants[i].radius + system.contacts.pairs.skin.margin + system.range;
+    const auto first = static_cast<std::int32_t>(i);
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const std::int32_t partner = list.partner[p];
-      if (system.cell.active ? is_bonded_image(system, static_cast<std::int32_t>(i), partner)
-                             : are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner))
+      const PeriodicImage j = system.contacts.neighbour(p);
+      if (system.cell.active ? is_bonded_image(system, first, j)
+                             : are_tied(system.bonds.tied, next_bond, first, j.body))
         continue;
-      if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
-      const std::int32_t other = system.body_of(partner);
-      if (other != partner && other <= static_cast<std::int32_t>(i)) continue;  // listed with the other one, or itself
-      const Vec2 branch = system.position_of(partner) - centre;
-      const double far = own + system.bodies.constants[other].radius;
-      const bool is_near = dot(branch, branch) <= far * far;
-      const auto first = static_cast<std::int32_t>(i);
-      if (!pairs.keep_contact(first, partner) && !pairs.leave(is_near) && is_near)
-        set_constants(system, block, pairs.add(first, partner));
+      if (shapes && !are_discs(system, first, j.body)) continue;
+      const Vec2 branch = system.bodies.motions[j.body].position - centre + system.cell.now.shift(j);
+      const double far = own + system.bodies.constants[j.body].radius;
+      if (!pairs.keep_contact({first, j})) pairs.leave({first, j}, dot(branch, branch) <= far * far);
     }
   }
   pairs.keep_others();
 }
 
+void find_near_pairs(GrainSystem& system, double reach) {
+  system.contacts.pairs.skin = {margin_of(system, system.smallest_radius, reach), 0};
+  system.bodies.blocks.each([&](std::size_t block) { find_pairs_of_block(system, block); });
+  connect_blocks(system);
+}
+
+/// A direction along which ellipses are apart by some distance, m.
+struct Apart {
+  double gap = -std::numeric_limits<double>::infinity();
+  Vec2 normal = {};
+};
+
+/// The axis of either part, towards j, with the largest gap of their bounding boxes.
+Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
+  Apart best;
+  const double c = dot(i.axis, j.axis), s = cross(i.axis, j.axis);
+  const double cc = c * c, ss = s * s;
+  const auto look = [&](double way, Vec2 axis, double own, double a, double b, double along, double across) {
+    const double gap = std::abs(way) - own - std::sqrt(a * a * along + b * b * across);
+    if (gap > best.gap) best = {gap, way < 0 ? -axis : axis};
+  };
+  look(cross(i.axis, branch), perpendicular(i.axis), i.b, j.a, j.b, ss, cc);
+  look(cross(j.axis, branch), perpendicular(j.axis), j.b, i.a, i.b, ss, cc);
+  look(dot(i.axis, branch), i.axis, i.a, j.a, j.b, cc, ss);
+  look(dot(j.axis, branch), j.axis, j.a, i.a, i.b, cc, ss);
+  return best;
+}
+
+/// Gap of two parts, or a sufficient lower bound of it; negative: overlap.
+/// \param[in,out] apart a direction along which they were apart, or {}
+double gap_of(const GrainSystem& system, const PairKey& pair, double enough, Vec2& apart) {
+  const GrainPart &part_i = system.shapes.parts[pair.i], &part_j = system.shapes.parts[pair.j.body];
+  const auto i = static_cast<std::size_t>(system.shapes.body_of_part[pair.i]);
+  const auto j = static_cast<std::size_t>(system.shapes.body_of_part[pair.j.body]);
+  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
+                      system.cell.now.shift(pair.j) +
+                      (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
+  if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
+  const Ellipse of_i{part_i.a, part_i.b, system.shapes.axes[i]}, of_j{part_j.a, part_j.b, system.shapes.axes[j]};
+  if (apart != Vec2{}) {
+    const double along = separation_along(of_i, of_j, branch, apart);
+    if (along > enough) return along;
+  }
+  const Apart boxes = apart_along_axes(of_i, of_j, branch);
+  if (boxes.gap > enough) {
+    apart = boxes.normal;
+    return boxes.gap;
+  }
+  const EllipseContact contact = contact_of_ellipses(of_i, of_j, branch, apart != Vec2{} ? apart : boxes.normal);
+  apart = contact.normal;
+  return contact.gap;
+}
+
+void find_met_parts(GrainSystem& system) {
+  std::vector<char>& met = system.contacts.parts.met;
+  std::ranges::fill(met, char{0});
+  each_list(system.contacts, [&](const NearList& list) {
+    for (std::size_t p = 0; p < list.count && list.between != Between::discs; ++p) {
+      const Partners of = partners_of(system, list, p);
+      met[of.part_i] = 1;
+      if (of.j >= 0) met[of.part_j] = 1;
+    }
+  });
+}
+
+/// All but pairs of whole discs.
+void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<NearParts::Close>& close) {
+  const NeighbourList& neighbours = *system.contacts.neighbours;
+  const double farthest = system.contacts.skin.margin + system.range;
+  close.clear();
+  for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+    const auto body = static_cast<std::int32_t>(i);
+    const bool disc = are_discs(system, body, body);
+    for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
+      for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
+        const PeriodicImage j = system.contacts.neighbour(n);
+        if (disc && are_discs(system, body, j.body)) continue;
+        for (std::int32_t q = system.shapes.first_part[j.body]; q < system.shapes.first_part[j.body + 1]; ++q) {
+          NearParts::Close pair{{p, {q, j.b, j.a}}, 0, {}};
+          pair.clear = gap_of(system, pair.pair, farthest, pair.apart);
+          if (pair.clear <= farthest) close.push_back(pair);
+        }
+      }
+    }
+  }
+  if (system.cell.active) std::ranges::sort(close, {}, &NearParts::Close::pair);
+}
+
+/// Those of the close parts of a block that are nearer than the margin.
+void find_nearest_parts(GrainSystem& system, std::size_t b) {
+  NearParts& near = system.contacts.parts;
+  const double farthest = near.skin.margin + system.range;
+  NewList round(system, system.contacts.of(Between::round_parts).blocks[b], b);
+  NewList ellipses(system, system.contacts.of(Between::ellipses).blocks[b], b);
+  for (NearParts::Close& pair : near.close[b]) {
+    if (pair.clear - 2 * near.travelled > farthest) continue;
+    NewList& list = between_parts(system, pair.pair.i, pair.pair.j.body) == Between::ellipses ? ellipses : round;
+    if (list.keep_contact(pair.pair)) continue;
+    if (const Vec2 apart = list.normal_before(); apart != Vec2{}) pair.apart = apart;
+    const double gap = gap_of(system, pair.pair, farthest, pair.apart);
+    pair.clear = gap + 2 * near.travelled;
+    list.leave(pair.pair, gap <= farthest, pair.apart);
+  }
+  round.keep_others();
+  ellipses.keep_others();
+}
+
+void find_nearest_parts(GrainSystem& system, double reach) {
+  NearParts& near = system.contacts.parts;
+  near.travelled += near.skin.moved;
+  near.skin = {margin_of(system, near.size, reach), 0};
+  system.bodies.blocks.each([&](std::size_t block) { find_nearest_parts(system, block); });
+  find_met_parts(system);
+  connect_blocks(system);
+}
+
+/// Whether a part comes nearer to a wall than the margin; ellipses at a segment by their bounding circle.
+bool is_near_wall(const GrainSystem& system, std::size_t body, const GrainPart& part, std::size_t w) {
+  const Vec2 axis = system.shapes.axes[body];
+  const Wall& wall = system.scene.walls[w];
+  const WallContact contact =
+      nearest(wall, system.walls.places[w].displacement, system.bodies.motions[body].position + offset_of(part, axis));
+  const double reach = wall.shape == Wall::Shape::line ? support({part.a, part.b, axis}, contact.normal).reach : part.a;
+  return contact.distance <= reach + system.contacts.skin.margin + system.range;
+}
+
+void find_walls_of_block(GrainSystem& system, std::size_t block) {
+  NewList walls(system, system.contacts.of(Between::walls).blocks[block], block);
+  const auto see = [&](std::int32_t i, std::size_t w) {
+    const PairKey pair{i, {static_cast<std::int32_t>(w)}};
+    if (!walls.keep_contact(pair)) walls.leave(pair, true);
+  };
+  const std::size_t count = system.scene.walls.size();
+  const double farthest = system.contacts.skin.margin + system.range;
+  std::vector<char> near(count);
+  for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+    for (std::size_t w = 0; w < count; ++w) {
+      const WallContact contact =
+          nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
+      near[w] = contact.distance <= system.bodies.constants[i].radius + farthest ? 1 : 0;
+      if (near[w] != 0 && system.shapes.parts.empty()) see(static_cast<std::int32_t>(i), w);
+    }
+    for (std::int32_t p = system.shapes.parts.empty() ? 0 : system.shapes.first_part[i];
+         !system.shapes.parts.empty() && p < system.shapes.first_part[i + 1]; ++p) {
+      for (std::size_t w = 0; w < count; ++w)
+        if (near[w] != 0 && is_near_wall(system, i, system.shapes.parts[p], w)) see(p, w);
+    }
+  }
+  walls.keep_others();
+}
+
 }  // namespace
 
-PairBlock PairBlock::emptied() {
-  PairBlock before = std::move(*this);
-  *this = {};
-  friction = before.friction;
-  equal = before.equal;
-  make_room(before);
-  const std::size_t room = groups.capacity();
-  if (friction) slips.reserve(room);
-  if (!equal) laws.reserve(room);
-  if (!before.records.empty()) records.reserve(room);
-  return before;
+void place_parts(GrainSystem& system) {
+  if (!has_shapes(system.scene)) return;
+  for (const std::size_t number : system.bodies.grain_of) {
+    const Grain& grain = system.scene.grains[number];
+    system.shapes.first_part.push_back(static_cast<std::int32_t>(system.shapes.parts.size()));
+    const std::vector<GrainPart> parts = parts_of(grain, system.scene.clumps);
+    const auto body = static_cast<std::int32_t>(system.shapes.first_part.size() - 1);
+    system.shapes.parts.insert(system.shapes.parts.end(), parts.begin(), parts.end());
+    system.shapes.body_of_part.insert(system.shapes.body_of_part.end(), parts.size(), body);
+    if (grain.shape() != GrainShape::disc) system.shapes.shaped.push_back(body);
+  }
+  system.shapes.first_part.push_back(static_cast<std::int32_t>(system.shapes.parts.size()));
+  system.shapes.axes.resize(system.bodies.motions.size(), {1, 0});
+  turn_axes(system);
 }
 
-void PairBlock::add_group() {
-  add_columns();
-  std::fill_n(groups.back().reach, lanes_of_pairs, -1.0);
-  if (friction) slips.emplace_back();
-  if (!equal) laws.emplace_back();
-  if (records.capacity() > 0) records.emplace_back();
+double longest_turn(const GrainSystem& system) {
+  const std::vector<std::int32_t>& shaped = system.shapes.shaped;
+  std::vector<double> ways(system.bodies.blocks.count());
+  system.bodies.blocks.each_piece(shaped.size(), [&](std::size_t begin, std::size_t end) {
+    double longest = 0;
+    for (std::size_t k = begin; k < end && longest == longest; ++k) {
+      const auto i = static_cast<std::size_t>(shaped[k]);
+      const double way =
+          std::abs(system.bodies.next[i].angle - system.bodies.motions[i].angle) * system.bodies.constants[i].radius;
+      if (way > longest || way != way) longest = way;
+    }
+    ways[system.bodies.blocks.of(begin)] = longest;
+  });
+  double longest = 0;
+  for (const double way : ways) {
+    if (way > longest || way != way) longest = way;
+    if (way != way) break;
+  }
+  return longest;
 }
 
-void PairBlock::copy(const PairBlock& other, std::size_t from, std::size_t to) {
-  constexpr std::size_t numbers = sizeof(ContactGroup) / sizeof(PairLanes) - 1;  // and the first step
-  const std::size_t g = from / lanes_of_pairs, k = from % lanes_of_pairs, lane = to % lanes_of_pairs;
-  copy_lane(other.groups[g], k, group(to), lane, numbers);
-  if (friction) copy_lane(other.slips[g], k, slips[to / lanes_of_pairs], lane);
-  if (!equal) copy_lane(other.laws[g], k, laws[to / lanes_of_pairs], lane);
-  copy_effects(other, from, to);
-  if (!records.empty()) copy_lane(other.records[g], k, records[to / lanes_of_pairs], lane);
+bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  return system.grain(i).shape() == GrainShape::disc && system.grain(j).shape() == GrainShape::disc;
 }
 
-std::size_t PairBlock::bytes() const {
-  return GroupList::bytes() + slips.capacity() * sizeof(PairSlips) + laws.capacity() * sizeof(PairLaws) +
-         records.capacity() * sizeof(PairRecords);
+Between between_parts(const GrainSystem& system, std::int32_t p, std::int32_t q) {
+  const bool round = system.shapes.parts[p].is_round() && system.shapes.parts[q].is_round();
+  return round ? Between::round_parts : Between::ellipses;
 }
 
-std::size_t NearPairs::bytes() const {
-  std::size_t sum = bodies.capacity() * sizeof(PairBody);
-  for (const PairBlock& block : blocks) sum += block.bytes();
+std::size_t NearParts::bytes() const {
+  std::size_t sum = bodies.capacity() * sizeof(PartBody) + met.capacity();
+  for (const std::vector<Close>& pairs : close) sum += pairs.capacity() * sizeof(Close);
   return sum;
 }
 
-std::optional<PairLaw> common_law(const GrainSystem& system) {
-  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
-  const bool equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
-    const bool plain = pair->stiffness > 0 && (!system.friction || pair->friction > 0);
-    return plain && *pair == *pairs[0];
-  });
-  if (!equal || system.has_effects() || system.bodies.constants.size() < 2) return {};
-  return law_of(constants_of(system, 0, 1));
-}
-
-double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
-  const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
-  return std::min(wanted, system.contacts.margin);
-}
-
-void prepare_near_pairs(GrainSystem& system) {
-  NearPairs& near = system.contacts.near;
-  const bool discs =
-      std::ranges::any_of(system.scene.present(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
-  if (!discs || !gives_force(system.options.law)) return;
-  near.active = true;
-  if (const std::optional<PairLaw> law = common_law(system)) {
-    near.equal = true;
-    near.law = *law;
+void prepare_bodies(GrainSystem& system) {
+  ContactList& contacts = system.contacts;
+  if (contacts.has(Between::discs)) {
+    contacts.pairs.bodies.resize(system.bodies.constants.size());
+    load_pair_bodies(system);
   }
-  near.loop = near_pair_loop(system);
-  near.bodies.resize(system.bodies.constants.size());
-  near.blocks.resize(system.bodies.blocks.count());
-  load_pair_bodies(system);
+  if (!contacts.has(Between::ellipses)) return;
+  contacts.parts.close.resize(system.bodies.blocks.count());
+  contacts.parts.bodies.resize(system.shapes.parts.size());
+  contacts.parts.met.resize(system.shapes.parts.size());
+  contacts.parts.size = std::ranges::min(system.shapes.parts, {}, &GrainPart::size).size;
 }
 
-void find_near_pairs(GrainSystem& system, double reach) {
-  NearPairs& near = system.contacts.near;
-  near.margin = margin_of_near_pairs(system, system.smallest_radius, reach);
-  near.moved = 0;
-  system.bodies.blocks.each([&](std::size_t block) { find_pairs_of_block(system, block); });
-  connect_blocks(system);
+void find_near_lists(GrainSystem& system) {
+  const BodyBlocks& blocks = system.bodies.blocks;
+  NearParts& parts = system.contacts.parts;
+  if (system.contacts.has(Between::walls)) blocks.each([&](std::size_t block) { find_walls_of_block(system, block); });
+  if (system.contacts.has(Between::discs)) find_near_pairs(system, std::sqrt(system.longest_way));
+  if (!system.contacts.has(Between::ellipses)) return;
+  parts.travelled = parts.skin.moved = 0;
+  blocks.each([&](std::size_t block) { find_close_parts(system, block, parts.close[block]); });
+  find_nearest_parts(system, reach_of(system));
+}
+
+void refresh_near_lists(GrainSystem& system, double reach) {
+  const auto refresh = [&](Between between, Skin& skin, const auto& find) {
+    if (!system.contacts.has(between)) return;
+    if (!skin.holds(reach)) find(system, reach);
+    skin.moved += reach;
+  };
+  refresh(Between::discs, system.contacts.pairs.skin, find_near_pairs);
+  refresh(Between::ellipses, system.contacts.parts.skin,
+          [](GrainSystem& of, double way) { find_nearest_parts(of, way); });
 }
 
 void find_near_pairs_of(GrainSystem& system, std::vector<std::size_t> blocks) {
@@ -203,111 +302,39 @@ void find_near_pairs_of(GrainSystem& system, std::vector<std::size_t> blocks) {
   connect_blocks(system);
 }
 
-void refresh_near_pairs(GrainSystem& system, double reach) {
-  NearPairs& near = system.contacts.near;
-  if (2 * (near.moved + reach) > near.margin) find_near_pairs(system, reach);
-  near.moved += reach;
-}
-
 void load_pair_bodies(GrainSystem& system) {
   for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     const GrainBody& body = system.bodies.constants[i];
     const GrainMotion& motion = system.bodies.motions[i];
     const BodyImpulse& push = system.bodies.impulses[i];
-    system.contacts.near.bodies[i] =
+    system.contacts.pairs.bodies[i] =
         pair_body(body, motion, body.inverse_mass * push.impulse, body.inverse_moment * push.torque);
   }
 }
 
-void touch_near_pairs(GrainSystem& system) {
-  const bool verlet = system.options.verlet();
-  for (PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      const auto i = static_cast<std::size_t>(block.first(p));
-      const auto j = static_cast<std::size_t>(system.body_of(block.second(p)));
-      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
-      const double range = block.has_effects ? block.effects_of(p).range[p % lanes_of_pairs] : 0;
-      if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > -range))
-        continue;
-      block.since(p) = system.step + (verlet ? 0 : 1);
-      ++system.counters.contacts;
+void load_part_bodies(GrainSystem& system) {
+  NearParts& near = system.contacts.parts;
+  system.bodies.blocks.each_piece(system.bodies.motions.size(), [&](std::size_t begin, std::size_t end_body) {
+    for (std::size_t b = begin; b < end_body; ++b) {
+      const GrainMotion& motion = system.bodies.motions[b];
+      const GrainBody& body = system.bodies.constants[b];
+      const BodyImpulse& push = system.bodies.impulses[b];
+      const auto end_part = static_cast<std::size_t>(system.shapes.first_part[b + 1]);
+      for (auto k = static_cast<std::size_t>(system.shapes.first_part[b]); k < end_part; ++k) {
+        if (near.met[k] == 0) continue;
+        const GrainPart& part = system.shapes.parts[k];
+        PartBody& seen = near.bodies[k];
+        seen.turned = part.is_round() ? offset_of(part, system.shapes.axes[b]) : system.shapes.axes[b];
+        seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
+        seen.velocity = motion.velocity;
+        if (system.cell.deforms)  // as in the drift before
+          seen.velocity += system.cell.gradient * (system.bodies.next[b].position - system.cell.centre);
+        seen.middle_velocity = seen.velocity + (0.5 * body.inverse_mass) * push.impulse;
+        seen.spin = motion.spin;
+        seen.middle_spin = motion.spin + 0.5 * body.inverse_moment * push.torque;
+      }
     }
-  }
-}
-
-ContactState state_of(const GrainSystem& system, const PairBlock& block, std::size_t p) {
-  const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-  ContactState state{.i = block.first(p), .j = block.second(p), .steps = system.step + 1 - block.since(p)};
-  state.impulse = block.groups[g].impulse[k];
-  if (system.friction) {
-    state.stretch = block.slips[g].stretch[k];
-    state.tangential_impulse = block.slips[g].impulse[k];
-  }
-  if (block.has_effects) state.set_effects(block.effects[g], k);
-  const double radius = system.bodies.constants[state.i].radius, sum = block.groups[g].reach[k];
-  if (g < block.records.size()) {
-    const PairRecords& records = block.records[g];
-    state.overlap = records.overlap[k];
-    state.closing = records.closing[k];
-    state.normal = {records.normal_x[k], records.normal_y[k]};
-  }
-  const double distance = sum - state.overlap, lever = radius / sum * distance;
-  state.arm_i = lever * state.normal;
-  state.arm_j = (lever - distance) * state.normal;
-  if (!system.shapes.parts.empty()) {
-    state.part_i = system.shapes.first_part[state.i];
-    state.part_j = system.shapes.first_part[state.j];
-  }
-  resolve_image(system, state);
-  return state;
-}
-
-std::pair<double, double> effects_of_near_pairs(const GrainSystem& system) {
-  const std::vector<PairBlock>& blocks = system.contacts.near.blocks;
-  if (blocks.empty() || !system.has_effects()) return {};
-  const auto place_of = [&](std::int32_t j) {
-    return system.position_of(j) - system.lag() * system.bodies.motions[system.body_of(j)].velocity;
-  };
-  return system.bodies.blocks.sum([&](std::size_t b) {
-    const PairBlock& block = blocks[b];
-    double rolling = 0, cohesion = 0;
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      const std::size_t k = p % lanes_of_pairs;
-      const ContactEffects& effects = block.effects_of(p);
-      rolling += effects.elastic(k);
-      const double distance = norm(place_of(block.second(p)) - place_of(block.first(p)));
-      cohesion -= effects.attraction[k] / system.dt() * (block.group(p).reach[k] - distance + effects.range[k]);
-    }
-    return std::pair(rolling, cohesion);
   });
-}
-
-void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
-  std::ranges::sort(contacts, {}, [](const ContactState& contact) { return std::pair(contact.i, contact.j); });
-  const BodyBlocks& blocks = system.bodies.blocks;
-  auto contact = contacts.begin();
-  for (std::size_t b = 0; b < blocks.count(); ++b) {
-    PairBlock& block = system.contacts.near.blocks[b];
-    block = {};
-    block.records.resize(1);  // that there are some
-    NewList<PairBlock> pairs = new_list(system, block, b);
-    for (; contact != contacts.end() && blocks.of(static_cast<std::size_t>(contact->i)) == b; ++contact) {
-      const std::size_t p = pairs.add(contact->i, contact->j), k = p % lanes_of_pairs;
-      set_constants(system, block, p);
-      block.since(p) = system.step + 1 - contact->steps;
-      block.groups.back().impulse[k] = contact->impulse;
-      PairRecords& records = block.records.back();
-      records.overlap[k] = contact->overlap;
-      records.closing[k] = contact->closing;
-      records.normal_x[k] = contact->normal.x;
-      records.normal_y[k] = contact->normal.y;
-      if (block.has_effects) block.effects.back().set_state(k, contact->rolling_stretch, contact->rolling_impulse);
-      if (!system.friction) continue;
-      block.slips.back().stretch[k] = contact->stretch;
-      block.slips.back().impulse[k] = contact->tangential_impulse;
-    }
-  }
 }
 
 }  // namespace equidem

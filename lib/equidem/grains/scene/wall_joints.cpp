@@ -233,10 +233,10 @@ void cover_single_contacts(GrainSystem& system) {
 }
 
 /// The contact of the part of another one with a wall; list.count: there is none.
-std::size_t place_of_wall(const NearParts::List& list, std::size_t p, std::int32_t wall) {
+std::size_t place_of_wall(const NearList& list, std::size_t p, std::int32_t wall) {
   const std::int32_t own = list.first(p);
   while (p > 0 && list.first(p - 1) == own) --p;
-  while (p < list.count && list.first(p) == own && list.wall(p) != static_cast<std::size_t>(wall)) ++p;
+  while (p < list.count && list.first(p) == own && list.second(p) != wall) ++p;
   return p < list.count && list.first(p) == own ? p : list.count;
 }
 
@@ -245,14 +245,14 @@ std::size_t place_of_wall(const NearParts::List& list, std::size_t p, std::int32
 void cover_joints(GrainSystem& system) {
   if (system.walls.joints.empty()) return;
   cover_single_contacts(system);
-  for (NearParts::List& list : system.contacts.near_walls.blocks) {
+  for (NearList& list : system.contacts.of(Between::walls).blocks) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const Partners of = partners_of(system, list, p);
       const std::int32_t cover = cover_of(system, of.i, of.part_i, ~of.j);
-      list.number(p, PartGroup::covered) = cover >= 0 ? 1 : 0;
+      list.shapes[p / lanes_of_pairs].covered[p % lanes_of_pairs] = cover >= 0 ? 1 : 0;
       if (cover < 0 || !list.touching(p)) continue;
       const std::size_t other = place_of_wall(list, p, cover);
-      if (other < list.count && !list.touching(other)) list.move_state(p, other);
+      if (other < list.count && !list.touching(other)) set_state(system, list, other, state_of(system, list, p));
       list.end(p);
     }
   }
