@@ -151,7 +151,7 @@ TEST_CASE("a_ratio_that_samples_cannot_have_is_refused_with_the_range_that_they_
       CHECK_THAT(error.what(), Catch::Contains("is not feasible with this sample (it has"));
       CHECK_THAT(error.what(), Catch::Contains(ratio < 1 ? "Take a smaller friction, or fewer bonds" : "more bonds"));
       CHECK_THAT(error.what(), Catch::Contains("friction does not raise it") || Catch::Contains("a smaller friction"));
-      const StrengthCalibration& nearest = error.nearest();
+      const StrengthCalibration& nearest = error.found();
       CHECK(nearest.ratio == (ratio < 1 ? nearest.lowest_ratio() : nearest.highest_ratio()));
       CHECK(nearest.tensile.mean == Approx(1e6));
       CHECK(nearest.tried.size() > 2);

@@ -212,6 +212,49 @@ class Interrupted(ProgramTest):
                 self.assertFalse((out / "result.json").exists())
 
 
+    def part_of(self, *command, file="result.json"):
+        """(result, report) of a command interrupted behind its first results: asked to stop ever later until there are some."""
+        for k in range(8):
+            out = self.folder / f"{command[0]}{k}"
+            stdout, stderr = self.interrupt(*command, "--out", out, after=0.1 * 2**k)
+            if stdout:
+                result = parse_json((out / "result.json").read_text())
+                self.assertEqual((result["status"], result["complete"]), ("interrupted", False))
+                self.assertIn("stopped as asked (", result["failure"])
+                self.assertIn(result["failure"], stderr)
+                self.assertIn("NOT DONE", stdout)
+                for name in ("case.toml", "index.html"):
+                    self.assertTrue((out / name).exists(), name)
+                return result, " ".join(stdout.split()), out
+            self.assertFalse((out / "result.json").exists())
+        self.fail("nothing was delivered")
+
+    def test_springs_found_until_an_interruption_are_delivered_with_their_error(self):
+        result, report, out = self.part_of("calibrate", CASES / "calibrate_random.toml", "--set", "assembly.discs=20000",
+                                           "--set", "material.poisson_ratio=0.2499")  # the range is scanned, and refuses it
+        self.assertGreater(result["kN"], 0)
+        self.assertGreater(result["achieved"]["relative_error"], 1e-6)
+        self.assertIn("the moduli are off by {:.2g}".format(result["achieved"]["relative_error"]), result["failure"])
+        self.assertIn("springs file none", report)
+        self.assertFalse((out / "springs.toml").exists())
+
+    def test_strengths_found_until_an_interruption_are_delivered_with_their_ratio(self):
+        result, report, out = self.part_of("calibrate", CASES / "calibrate_strength.toml", "--set", "strength_target.samples=8")
+        self.assertGreater(result["contact_strength"]["tension"], 0)
+        self.assertIn("not converged: the nearest ratio of ", result["failure"])
+        self.assertIn("strength file none", report)
+        self.assertFalse((out / "strength.toml").exists())
+
+    def test_moduli_and_frequencies_found_until_an_interruption_are_delivered(self):
+        frequencies = [10.0**(k / 50) for k in range(200)]
+        result, _, out = self.part_of("homogenize", CASES / "viscoelastic_cell.toml", "--set",
+                                      f"viscoelastic.frequencies={frequencies}")
+        self.assertGreater(result["shear_modulus"], 0)
+        done = len(result["viscoelastic"]["harmonic"])
+        self.assertIn(f"{done} of 200 frequencies are done", result["failure"])
+        self.assertEqual(len((out / "viscoelastic.csv").read_text().splitlines()), done + 1)
+
+
 class Inputs(ProgramTest):
     def test_no_result_replaces_an_input_of_its_case(self):
         bodies = self.folder / "grains.csv"

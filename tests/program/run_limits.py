@@ -9,7 +9,7 @@ import resource
 import subprocess
 import unittest
 
-from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
+from program import CASES, PROGRAM, SOURCE, TENSION, ProgramTest, equidem, parse_json
 
 CELL = CASES / "random_cell.toml"
 ENSEMBLE = CASES / "ensemble.toml"
@@ -70,6 +70,9 @@ class Memory(ProgramTest):
               ("--set", "assembly.discs=3000", "--set", "viscoelastic.frequencies=[1.0]")),
              ("stability", TENSION, GRID),
              ("stability", CELL, ("--set", "assembly.discs=10000")),
+             ("calibrate", CASES / "calibrate_random.toml", ("--set", "assembly.discs=50000")),
+             ("sweep", TENSION, (*BLOCK, "--key", "ratio", "--values", "0,0.1,0.2,0.3")),
+             ("study", SOURCE / "data" / "studies" / "abe_lattice.toml", ("--rounds", 3, "--budget", 0)),
              ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=50000", "--set", "packing.box=none", *LOOSE)),
              ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=200000", "--set", "packing.box=none", "--set",
                                                    "packing.method=insertion", "--set", "packing.overlap=none", *LOOSE)),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Threads, processes and Ctrl-C."""
 
+import json
 import multiprocessing
 import pathlib
 import signal
@@ -132,6 +133,35 @@ def test_ctrl_c_ends_a_long_computation_and_python_goes_on():
     child.send_signal(signal.SIGINT)  # Python has its own handler back
     assert child.stdout.readline() == "KeyboardInterrupt\n"
     assert child.wait(60) == 0
+
+
+CALIBRATED = """
+import equidem as eq, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+cell = eq.delaunay(discs=20000, radius=1e-3, seed=1, periodic=True)
+case = eq.Case(assembly=cell, material={"shear_modulus": 1e9, "poisson_ratio": 0.2499, "plane": "strain"})
+print("begun", flush=True)
+try:
+    case.calibrate(out=sys.argv[1])
+except KeyboardInterrupt as error:
+    print(error)
+"""
+
+
+def test_ctrl_c_leaves_the_springs_found_until_then_in_the_folder(tmp_path):
+    for k in range(8):
+        out = tmp_path / str(k)
+        with subprocess.Popen([sys.executable, "-c", CALIBRATED, str(out)], stdout=subprocess.PIPE, text=True) as child:
+            assert child.stdout.readline() == "begun\n"
+            time.sleep(0.2 * 2**k)
+            child.send_signal(signal.SIGINT)
+            sentence = child.communicate(timeout=60)[0]
+        assert sentence.startswith("stopped as asked")
+        if (out / "result.json").exists():
+            break
+    result = json.loads((out / "result.json").read_text())
+    assert result["status"] == "interrupted" and result["kN"] > 0
+    assert result["failure"] == sentence.strip() and "not converged: with the best springs of" in sentence
 
 
 def test_the_module_is_imported_without_what_only_some_of_it_needs():

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace equidem {
 
@@ -42,6 +44,23 @@ class Error : public std::runtime_error {
  private:
   ErrorKind kind_;
   std::string problem_, why_, remedy_, where_;
+};
+
+/// An error, with what was found before it.
+template <class Found>
+class ErrorWith : public Error {
+ public:
+  ErrorWith(const Error& error, Found found) : Error(error), found_(std::make_shared<const Found>(std::move(found))) {}
+  /// \param reason one more
+  ErrorWith(const Error& error, const std::string& reason, Found found)
+      : ErrorWith(Error(error.kind(), error.problem(), error.why().empty() ? reason : error.why() + "; " + reason,
+                        error.remedy(), error.where()),
+                  std::move(found)) {}
+
+  [[nodiscard]] const Found& found() const { return *found_; }
+
+ private:
+  std::shared_ptr<const Found> found_;
 };
 
 /// Throw an Error of kind bad_input.

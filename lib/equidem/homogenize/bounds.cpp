@@ -172,8 +172,8 @@ BoundedStiffness bounded_stiffness(const Assembly& assembly, const ContactSpring
     try {
       one.stiffness = stiffness_of();
     } catch (const Error& error) {
-      if (error.kind() == ErrorKind::interrupted) throw;
       one.missing = error.what();
+      if (error.kind() == ErrorKind::interrupted) throw ErrorWith(error, "bounds are missing", std::move(all));
     }
   };
   Stopwatch watch;

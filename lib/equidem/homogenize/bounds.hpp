@@ -95,7 +95,8 @@ struct BoundedStiffness {
 std::vector<Boundary> boundaries_of(const Assembly& assembly, const ContactSprings& springs,
                                     const BoundsOptions& options);
 
-/// \throws Error as effective_stiffness of the first boundary; a bound that cannot be found says why
+/// \throws Error as effective_stiffness of the first boundary; a bound that cannot be found says why;
+///         ErrorWith<BoundedStiffness> where the user asked to stop behind it
 BoundedStiffness bounded_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                    const BoundsOptions& options = {});
 

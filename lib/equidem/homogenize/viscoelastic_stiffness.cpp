@@ -358,9 +358,16 @@ ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const Con
   result.times = elastic.times;
   result.solver = "UMFPACK LU of complex numbers";
   Progress progress("frequencies");
-  for (std::size_t k = 0; k < frequencies.size(); ++k) {
-    result.harmonic.push_back(at_frequency(sample, viscoelasticity, frequencies[k], options, assembly.area(), result));
-    progress.update(static_cast<double>(k + 1) / static_cast<double>(frequencies.size()));
+  try {
+    for (std::size_t k = 0; k < frequencies.size(); ++k) {
+      result.harmonic.push_back(
+          at_frequency(sample, viscoelasticity, frequencies[k], options, assembly.area(), result));
+      progress.update(static_cast<double>(k + 1) / static_cast<double>(frequencies.size()));
+    }
+  } catch (const Error& error) {
+    if (result.harmonic.empty()) throw;
+    const std::string done = fmt::format("{} of {} frequencies are done", result.harmonic.size(), frequencies.size());
+    throw ErrorWith(error, done, std::move(result));
   }
   return result;
 }

@@ -55,7 +55,7 @@ SolveEstimate estimate_viscoelastic(const Assembly& assembly, const ContactSprin
 /// \param options boundary periodic or displacement
 /// \throws Error as effective_stiffness; (bad_input) on negative springs, whose motions would grow, on tractions at the
 ///         boundary, frequencies that are not positive or outside a table; (computation_failed) where the springs of a
-///         frequency are too far apart
+///         frequency are too far apart; ErrorWith<ViscoelasticStiffness> behind the first frequency
 ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                              const Viscoelasticity& viscoelasticity,
                                              std::span<const double> frequencies,

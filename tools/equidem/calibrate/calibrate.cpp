@@ -402,13 +402,16 @@ int calibrate(const CalibrateVerb& options) {
 
   const ElasticModuli& wanted = resolved.material->moduli;
   const CalibrateOptions how = calibrate_options(resolved);
-  std::optional<Error> refusal;
+  std::optional<Error> refusal, failure;
   const Calibration found = [&] {
     try {
       return calibrate(problem.assembly, wanted, how);
     } catch (const InfeasibleModuli& infeasible) {
       refusal = infeasible.at(resolved.where("material"));
-      return infeasible.range();
+      return infeasible.found();
+    } catch (const ErrorWith<Calibration>& ended) {
+      failure = ended;
+      return ended.found();
     }
   }();
   std::vector<OutputPart> parts{
@@ -421,23 +424,29 @@ int calibrate(const CalibrateVerb& options) {
             parts);
     throw *refusal;
   }
+  const bool converged = !failure;
   StageTimes times = problem.times;
   times.add(found.times);
+  Stopwatch watch;
+  std::optional<MeanFieldGuess> guess;
+  if (converged) failure = failure_of([&] { guess = mean_field_guess(problem.assembly, wanted, how); });
+  if (converged && failure)
+    failure.emplace(failure->kind(), failure->problem(), "the springs are found, and not compared with the mean field",
+                    "");
+  times.add("mean field", watch.lap());
+  std::optional<StopsHeldBack> held_back;
+  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
   problem.springs = {
       bending_springs(problem.assembly, contact_springs(problem.assembly, found.springs, resolved.weighting),
                       resolved.bending),
       found.springs,
       fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.9g}), weighting {}", found.springs.kN, found.springs.kT,
                   found.springs.ratio(), to_string(resolved.weighting))};
-  Stopwatch watch;
-  const std::optional<MeanFieldGuess> guess = mean_field_guess(problem.assembly, wanted, how);
-  times.add("mean field", watch.lap());
-
-  const std::string file = text_of_springs(resolved, problem.assembly, found);
   const auto path = options.springs_path();
   Results results = calibrated_results(problem, found, guess);
-  add_found_file(results, parts, "springs", path, file);
-  deliver(common, "calibrated", std::move(results), std::move(times), parts);
+  converged ? add_found_file(results, parts, "springs", path, text_of_springs(resolved, problem.assembly, found))
+            : add_no_file(results, "springs", "what is above is the best that was found");
+  deliver(common, "calibrated", std::move(results), std::move(times), parts, failure);
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;
 }

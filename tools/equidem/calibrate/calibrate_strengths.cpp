@@ -220,6 +220,10 @@ void add_found_file(Results& results, std::vector<OutputPart>& parts, const std:
   parts.push_back({"the " + name, write, OutputPart::file});
 }
 
+void add_no_file(Results& results, const std::string& noun, const std::string& why) {
+  results.line(noun + " file", "none: " + why).set(noun + "_file", nullptr);
+}
+
 Results refusal_results(const Error& refusal) {
   return Results().line("NOT FEASIBLE", refusal.what()).set("refusal", refusal.what());
 }
@@ -248,7 +252,7 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   const StrengthTargetCase& target = *resolved.strength_target;
   StrengthOptions strengths = resolved.strength.value_or(StrengthOptions{});
   Progress progress("testing");
-  std::optional<Error> refusal;
+  std::optional<Error> refusal, failure;
   const StrengthCalibration found = casefile::with_place(place, [&] {
     try {
       return calibrate_strength(samples, target.wanted,
@@ -256,24 +260,28 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
                                 [&](double share) { progress.update(share); });
     } catch (const InfeasibleStrengths& infeasible) {
       refusal = infeasible.at(place);
-      return infeasible.nearest();
+      return infeasible.found();
+    } catch (const ErrorWith<StrengthCalibration>& ended) {
+      failure = ended.at(place);
+      return ended.found();
     }
   });
   problem.times.add("tests", watch.lap());
+  std::optional<StopsHeldBack> held_back;
+  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
   strengths.tension = found.tension;
   strengths.shear = found.shear;
   strengths.friction = found.friction;
   const std::string text = text_of_strengths(resolved, found, strengths);
   Results results = strength_results(problem, samples.front().sample, found);
   std::vector<OutputPart> parts{{"case.toml", [&](const CommonOptions& into) { write_case(into, resolved); }}};
-  if (refusal) {
-    results.append(refusal_results(*refusal));
-    results.line("strength file", "none: what is above has the nearest ratio that was found")
-        .set("strength_file", nullptr);
+  if (refusal) results.append(refusal_results(*refusal));
+  if (refusal || failure) {
+    add_no_file(results, "strength", "what is above has the nearest ratio that was found");
   } else {
     add_found_file(results, parts, "strength", path, text);
   }
-  deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts);
+  deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts, failure);
   if (refusal) throw *refusal;
   if (path) say(options, fmt::format("strengths written to {}", path->string()));
   return 0;

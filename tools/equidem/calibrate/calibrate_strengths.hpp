@@ -21,6 +21,8 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
 /// \param noun "springs", "strength"
 void add_found_file(Results& results, std::vector<OutputPart>& parts, const std::string& noun,
                     const std::optional<std::filesystem::path>& path, const std::string& text);
+/// Says that no file is written, in the report and in the JSON.
+void add_no_file(Results& results, const std::string& noun, const std::string& why);
 /// What was asked for, moduli or strengths, is out of reach: `refusal`, and its line.
 Results refusal_results(const Error& refusal);
 

@@ -501,10 +501,16 @@ std::optional<RelationBeside> relation_of(const Problem& problem) {
   return relation_beside(*problem.springs.constants, spring_relation(problem.resolved, problem.assembly));
 }
 
-BoundedStiffness homogenize(const Problem& problem) {
+/// \param failure set where the bounds are not finished
+BoundedStiffness homogenize(const Problem& problem, std::optional<Error>& failure) {
   const Case& resolved = problem.resolved;
   return casefile::with_place(resolved.homogenize.boundary ? resolved.where("homogenize.boundary") : "", [&] {
-    return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
+    try {
+      return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
+    } catch (const ErrorWith<BoundedStiffness>& ended) {
+      failure = ended;
+      return ended.found();
+    }
   });
 }
 
@@ -542,15 +548,25 @@ struct Harmonic {
   ViscoelasticStiffness stiffness;
 };
 
-std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary) {
+/// \param failure set where there are none or not all of them
+std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary, std::optional<Error>& failure) {
   const Case& resolved = problem.resolved;
-  if (!resolved.viscoelastic) return {};
+  if (!resolved.viscoelastic || failure) return {};
   Harmonic result{build_viscoelasticity(resolved, problem.springs.constants), {}};
   const std::vector<double> frequencies = frequencies_of(resolved, result.springs);
-  result.stiffness = casefile::with_place(resolved.where("viscoelastic"), [&] {
-    return viscoelastic_stiffness(problem.assembly, problem.springs.springs, result.springs, frequencies,
-                                  {.boundary = boundary, .rotation = resolved.rotation, .solver = resolved.solver});
-  });
+  const auto solve = [&] {
+    try {
+      result.stiffness =
+          viscoelastic_stiffness(problem.assembly, problem.springs.springs, result.springs, frequencies,
+                                 {.boundary = boundary, .rotation = resolved.rotation, .solver = resolved.solver});
+    } catch (const ErrorWith<ViscoelasticStiffness>& ended) {
+      result.stiffness = ended.found();
+      throw;
+    }
+  };
+  failure = failure_of([&] { casefile::with_place(resolved.where("viscoelastic"), solve); });
+  if (failure && failure->kind() == ErrorKind::bad_input) throw Error(*failure);
+  if (failure && result.stiffness.harmonic.empty()) return {};
   return result;
 }
 
@@ -618,10 +634,13 @@ int homogenize(const HomogenizeVerb& options) {
   const Problem& problem = *shared_problem;
   if (options.dry_run) return dry_run_homogenization(options, problem, options.accuracy);
 
-  const auto shared_stiffness = std::make_shared<const BoundedStiffness>(homogenize(problem));
+  std::optional<Error> failure;
+  const auto shared_stiffness = std::make_shared<const BoundedStiffness>(homogenize(problem, failure));
   const BoundedStiffness& homogenized = *shared_stiffness;
   const EffectiveStiffness& result = homogenized.result;
-  const auto harmonic = std::make_shared<const std::optional<Harmonic>>(harmonic_of(problem, result.boundary));
+  const auto harmonic = std::make_shared<const std::optional<Harmonic>>(harmonic_of(problem, result.boundary, failure));
+  std::optional<StopsHeldBack> held_back;
+  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
   StageTimes times = problem.times;
   times.add(result.times);
   if (*harmonic) times.add((*harmonic)->stiffness.times);
@@ -655,7 +674,7 @@ int homogenize(const HomogenizeVerb& options) {
   parts.push_back({"the states",
                    [=](const CommonOptions& into) { write_states(into, *shared_problem, shared_stiffness->result); },
                    OutputPart::page});
-  deliver(options, status_of(result.unstable_modes), std::move(results), std::move(times), parts);
+  deliver(options, status_of(result.unstable_modes), std::move(results), std::move(times), parts, failure);
   constexpr const char* strains[] = {"xx", "yy", "xy"};
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {shared_stiffness, &result.fluctuations[k]}));

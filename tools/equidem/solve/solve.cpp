@@ -241,11 +241,18 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
   const auto shared_results = std::make_shared<std::vector<SolvedCase>>();
   std::vector<SolvedCase>& results = *shared_results;
   Effects effects;
+  std::optional<Error> failure;
   {  // the factorization is not needed beyond the load cases
     const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
-    for (const NamedLoads& loads : problem.load_cases) results.push_back(solve_case(problem, solver, loads));
+    for (const NamedLoads& loads : problem.load_cases) {
+      failure = failure_of([&] { results.push_back(solve_case(problem, solver, loads)); });
+      if (failure && results.empty()) throw Error(*failure);
+      if (failure) break;
+    }
     effects = solver.effects();
   }
+  std::optional<StopsHeldBack> held_back;
+  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
 
   StageTimes times = problem.times;
   for (const SolvedCase& result : results) {
@@ -275,7 +282,8 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
     };
     parts.push_back({"the state", write, OutputPart::page});
   }
-  deliver(options, status_of(results.front().equilibrium.unstable_modes), std::move(all), std::move(times), parts);
+  deliver(options, status_of(results.front().equilibrium.unstable_modes), std::move(all), std::move(times), parts,
+          failure);
   if (!arrays_wanted()) return true;
   for (const SolvedCase& result : results) {
     hand_over(state_arrays(result.name.empty() ? "" : result.name + "/",

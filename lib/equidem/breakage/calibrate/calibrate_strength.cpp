@@ -47,6 +47,9 @@ class Search {
         target_(wanted.second() / wanted.tensile) {}
 
   StrengthCalibration run();
+  [[nodiscard]] bool has_some() const { return !tried_.empty(); }
+  /// Throws an error that ends the search, with the strengths at the nearest ratio of those tried.
+  [[noreturn]] void end(const Error& error) const;
 
  private:
   [[nodiscard]] bool finds_friction() const { return options_.shear_over_tension.has_value(); }
@@ -59,6 +62,7 @@ class Search {
   [[nodiscard]] double off(const Tried& tried) const { return std::log(tried.ratio / target_); }
   const Tried& at(double value);
   const Tried& between();
+  [[nodiscard]] const Tried& nearest() const;
   void scan();
   [[nodiscard]] StrengthOptions strengths_at(double value) const;
   [[nodiscard]] SampleStrength measure(std::size_t sample, bool second, const ContactStrengths& strengths) const;
@@ -136,9 +140,9 @@ const Tried& Search::at(double value) {
     for (const SampleStrength& one : *all) energy_error_ = std::max(energy_error_, one.energy_error);
   }
   made.ratio = mean(stresses(made.second)) / mean(stresses(made.tension));
-  if (progress_) progress_(1 - std::pow(0.85, static_cast<double>(tried_.size() + 1)));
-  const auto place = std::ranges::upper_bound(tried_, value, {}, &Tried::value);
-  return *tried_.insert(place, std::move(made));
+  const auto place = tried_.insert(std::ranges::upper_bound(tried_, value, {}, &Tried::value), std::move(made));
+  if (progress_) progress_(1 - std::pow(0.85, static_cast<double>(tried_.size())));
+  return *place;
 }
 
 void Search::refuse() const {
@@ -218,7 +222,18 @@ const Tried& Search::between() {
       a = s, off_a = off_s, off_b *= 0.5;
     }
   }
+  return nearest();
+}
+
+const Tried& Search::nearest() const {
   return *std::ranges::min_element(tried_, {}, [&](const Tried& one) { return std::abs(off(one)); });
+}
+
+void Search::end(const Error& error) const {
+  throw ErrorWith(error,
+                  fmt::format("not converged: the nearest ratio of {} is {:.4g} in place of {:.4g}{}",
+                              counted(std::ssize(tried_), "trial"), nearest().ratio, target_, unit()),
+                  result(nearest()));
 }
 
 /// d ln(ratio)/d(folded value), over the neighbours of the value that was found.
@@ -310,7 +325,15 @@ StrengthCalibration calibrate_strength(const std::vector<SeededSample>& samples,
                 "Give shorter notches, or larger samples");
     }
   }
-  return Search(samples, wanted, options, progress).run();
+  Search search(samples, wanted, options, progress);
+  try {
+    return search.run();
+  } catch (const InfeasibleStrengths&) {
+    throw;
+  } catch (const Error& error) {
+    if (search.has_some() && error.kind() != ErrorKind::bad_input) search.end(error);
+    throw;
+  }
 }
 
 }  // namespace equidem

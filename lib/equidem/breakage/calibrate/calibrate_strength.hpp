@@ -14,9 +14,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "equidem/breakage/calibrate/strength_test.hpp"
@@ -85,17 +83,10 @@ struct StrengthCalibration {
   [[nodiscard]] double highest_ratio() const;
 };
 
-/// The ratio wanted lies outside the range that the samples have.
-class InfeasibleStrengths : public Error {
+/// The ratio wanted lies outside the range that the samples have: the strengths at the nearest one are found.
+class InfeasibleStrengths : public ErrorWith<StrengthCalibration> {
  public:
-  InfeasibleStrengths(const Error& error, StrengthCalibration nearest)
-      : Error(error), nearest_(std::make_shared<const StrengthCalibration>(std::move(nearest))) {}
-
-  /// The values that were tried, and the strengths at the nearest ratio.
-  [[nodiscard]] const StrengthCalibration& nearest() const { return *nearest_; }
-
- private:
-  std::shared_ptr<const StrengthCalibration> nearest_;
+  using ErrorWith::ErrorWith;
 };
 
 /// The least and largest values that are tried.
@@ -103,7 +94,8 @@ inline constexpr double least_shear_over_tension = 0.05, largest_shear_over_tens
 
 /// \param progress called with an estimate of the share that is done; may be empty
 /// \throws Error (bad_input) where targets or options are out of range; InfeasibleStrengths where the ratio lies
-///         outside the feasible range, which the sentence states; as StrengthSample::strength
+///         outside the feasible range, which the sentence states; as StrengthSample::strength, but
+///         ErrorWith<StrengthCalibration> with the strengths at the nearest ratio where some were tried
 StrengthCalibration calibrate_strength(const std::vector<SeededSample>& samples, const StrengthTargets& wanted,
                                        const StrengthCalibrationOptions& options,
                                        const std::function<void(double)>& progress = {});

@@ -44,11 +44,18 @@ void check(const Assembly& assembly, const CalibrateOptions& options) {
   }
 }
 
-/// Homogenizes one assembly with kN = 1 Pa at many spring ratios and keeps the last result.
+void judge(const ElasticModuli& target, Calibration& result) {
+  result.moduli = effective_moduli(result.achieved.stiffness);
+  const auto error = [](double reached, double wanted) { return std::abs(reached - wanted) / wanted; };
+  result.relative_error = std::max(error(result.moduli.shear_modulus, target.shear_modulus),
+                                   error(result.moduli.bulk_modulus_2d, target.bulk_modulus_2d()));
+}
+
+/// Homogenizes one assembly with kN = 1 Pa at many spring ratios; keeps the last result and that nearest to the target.
 class Homogenizer {
  public:
-  Homogenizer(const Assembly& assembly, const CalibrateOptions& options)
-      : assembly_(assembly), how_(options), options_(homogenize_options(assembly, options)) {}
+  Homogenizer(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options)
+      : assembly_(assembly), target_(target), how_(options), options_(homogenize_options(assembly, options)) {}
 
   /// Not stable where the network cannot be homogenized at this ratio: a mechanism, or too near a loss of stability.
   RatioSample sample(double ratio) {
@@ -62,14 +69,17 @@ class Homogenizer {
       failure_ = error;
       return {.ratio = ratio, .stable = false};
     }
+    last_.fluctuations = {};
     times_.add(last_.times);
     const auto [K, G] = isotropic_part(last_.stiffness);
     const auto [K_T, G_T] = isotropic_part(last_.tangential_part);
-    return {.ratio = ratio,
-            .shear_to_bulk = G / K,
-            .slope = (G_T * K - G * K_T) / (ratio * K * K),
-            .bulk_growth = K_T / K,
-            .stable = last_.unstable_modes == 0 && eigenstrains(last_.stiffness).values[0] > 0};
+    const RatioSample made{.ratio = ratio,
+                           .shear_to_bulk = G / K,
+                           .slope = (G_T * K - G * K_T) / (ratio * K * K),
+                           .bulk_growth = K_T / K,
+                           .stable = last_.unstable_modes == 0 && eigenstrains(last_.stiffness).values[0] > 0};
+    if (made.stable) keep(made);
+    return made;
   }
 
   /// The last sample, with springs `kN` times as stiff.
@@ -90,23 +100,47 @@ class Homogenizer {
   }
   [[nodiscard]] bool failed() const { return failure_.has_value(); }
 
+  [[nodiscard]] bool has_best() const { return best_.shear_to_bulk > 0; }
+  /// Throws an error that ends the search, with the best springs, which are there.
+  [[noreturn]] void end_search(const Error& error) {
+    ratio_ = best_.ratio;
+    last_ = std::move(at_best_);
+    Calibration result;
+    result.smallest_shear_to_bulk = least_;
+    result.largest_shear_to_bulk = greatest_;
+    result.method = "search on kT/kN, ended before it converged";
+    deliver(target_.shear_modulus / isotropic_part(last_.stiffness).shear, result);
+    judge(target_, result);
+    const std::string why = fmt::format("not converged: with the best springs of {} the moduli are off by {:.2g}",
+                                        counted(factorizations_, "factorization"), result.relative_error);
+    throw ErrorWith(error, why, std::move(result));
+  }
+
  private:
+  void keep(const RatioSample& made) {
+    const double wanted = target_.shear_modulus / target_.bulk_modulus_2d();
+    const auto off = [&](const RatioSample& one) { return std::abs(std::log(one.shear_to_bulk / wanted)); };
+    if (made.ratio >= 0) {
+      least_ = std::min(least_, made.shear_to_bulk);
+      greatest_ = std::max(greatest_, made.shear_to_bulk);
+    }
+    if (has_best() && off(made) >= off(best_)) return;
+    best_ = made;
+    at_best_ = last_;
+  }
+
   const Assembly& assembly_;
+  const ElasticModuli& target_;
   const CalibrateOptions& how_;
   HomogenizeOptions options_;
   double ratio_ = 0;
-  EffectiveStiffness last_;
+  EffectiveStiffness last_, at_best_;
+  RatioSample best_;  ///< nearest to the target of those that are stable
+  double least_ = std::numeric_limits<double>::infinity(), greatest_ = 0;  ///< G/K of those with kT >= 0
   std::optional<Error> failure_;
   StageTimes times_;
   int factorizations_ = 0;
 };
-
-void judge(const ElasticModuli& target, Calibration& result) {
-  result.moduli = effective_moduli(result.achieved.stiffness);
-  const auto error = [](double reached, double wanted) { return std::abs(reached - wanted) / wanted; };
-  result.relative_error = std::max(error(result.moduli.shear_modulus, target.shear_modulus),
-                                   error(result.moduli.bulk_modulus_2d, target.bulk_modulus_2d()));
-}
 
 /// Does what refuses a Poisson's ratio. \throws InfeasibleModuli with the range of G/K of the assembly
 template <typename Task>
@@ -163,9 +197,8 @@ double above(double limit) {
             fmt::format("Ask for a Poisson's ratio of at most {:.6f}", below(highest)));
 }
 
-Calibration search(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
+Calibration search(Homogenizer& homogenizer, const ElasticModuli& target, const CalibrateOptions& options) {
   const double wanted = target.shear_modulus / target.bulk_modulus_2d();
-  Homogenizer homogenizer(assembly, options);
   const RatioSampler sample = [&](double ratio) { return homogenizer.sample(ratio); };
 
   RatioRange range = sample_range(sample);
@@ -218,7 +251,8 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
                               positive, highest));
 }
 
-Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
+Calibration solve_lattice(Homogenizer& homogenizer, bool periodic, const ElasticModuli& target,
+                          const CalibrateOptions& options) {
   const Lattice& lattice = *options.lattice;
   const SpringRelation& relation = lattice.relation;
   if (options.weighting != SpringWeighting::uniform) {
@@ -238,19 +272,25 @@ Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target,
   result.largest_shear_to_bulk = range.greatest;
   result.scanned = true;
   result.method = fmt::format("closed form, {}", relation.source);
-  result.verified = assembly.periodic();
-  if (result.verified) {
-    Homogenizer homogenizer(assembly, options);
-    if (!homogenizer.sample(springs.ratio()).stable) {
-      if (homogenizer.failed()) homogenizer.fail();
-      refuse_unstable_lattice(target, lattice, springs.ratio(), options.static_only);
-    }
-    // Not scaled to the wanted moduli: the closed form is tried as it is.
-    homogenizer.deliver(springs.kN, result);
-  } else {
-    result.achieved.stiffness = isotropic_stiffness(target.bulk_modulus_2d(), target.shear_modulus);
-  }
+  result.verified = false;
   result.springs = springs;
+  result.achieved.stiffness = isotropic_stiffness(target.bulk_modulus_2d(), target.shear_modulus);
+  judge(target, result);
+  if (!periodic) return result;
+  RatioSample made;
+  try {
+    made = homogenizer.sample(springs.ratio());
+  } catch (const Error& stopped) {
+    throw ErrorWith(stopped, "the closed form was not tried on this cell", result);
+  }
+  if (!made.stable) {
+    if (homogenizer.failed()) homogenizer.fail();
+    refuse_unstable_lattice(target, lattice, springs.ratio(), options.static_only);
+  }
+  // Not scaled to the wanted moduli: the closed form is tried as it is.
+  homogenizer.deliver(springs.kN, result);
+  result.springs = springs;
+  result.verified = true;
   judge(target, result);
   return result;
 }
@@ -268,15 +308,28 @@ double Calibration::highest_poisson_ratio(Plane plane) const {
 Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {
   check(target);
   check(assembly, options);
+  Homogenizer homogenizer(assembly, target, options);
   const bool closed_form = options.lattice != nullptr && (options.weighting == SpringWeighting::uniform ||
                                                           options.lattice->relation.equal_springs != nullptr);
-  Calibration result = closed_form ? solve_lattice(assembly, target, options) : search(assembly, target, options);
+  Calibration result = [&] {
+    try {
+      return closed_form ? solve_lattice(homogenizer, assembly.periodic(), target, options)
+                         : search(homogenizer, target, options);
+    } catch (const ErrorWith<Calibration>&) {
+      throw;
+    } catch (const Error& error) {
+      if (homogenizer.has_best() && error.kind() != ErrorKind::bad_input) homogenizer.end_search(error);
+      throw;
+    }
+  }();
   // Rounding of the homogenization itself, which the tolerance may lie below.
   const double accepted = std::max(options.tolerance, 1e-10);
   if (!(result.relative_error <= accepted)) {
-    computation_failed(fmt::format("the moduli reached are off by {:.2g}", result.relative_error),
-                       result.verified ? "the springs do not give them on this assembly" : "",
-                       "Check that the assembly is this lattice");
+    const Error off(ErrorKind::computation_failed,
+                    fmt::format("the moduli reached are off by {:.2g}", result.relative_error),
+                    result.verified ? "the springs do not give them on this assembly" : "",
+                    "Check that the assembly is this lattice");
+    throw ErrorWith(off, std::move(result));
   }
   return result;
 }

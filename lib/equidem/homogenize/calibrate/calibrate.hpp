@@ -4,7 +4,6 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,18 +56,12 @@ struct Calibration {
   [[nodiscard]] double highest_poisson_ratio(Plane plane) const;
 };
 
-/// The Poisson's ratio wanted lies outside the range of the assembly.
-class InfeasibleModuli : public Error {
+/// The Poisson's ratio wanted lies outside the range of the assembly: the range of G/K and `scanned` are found.
+class InfeasibleModuli : public ErrorWith<Calibration> {
  public:
   InfeasibleModuli(const Error& error, Calibration range)
-      : Error(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where()),
-        range_(std::make_shared<const Calibration>(std::move(range))) {}
-
-  /// Of which the range of G/K and `scanned` are set.
-  [[nodiscard]] const Calibration& range() const { return *range_; }
-
- private:
-  std::shared_ptr<const Calibration> range_;
+      : ErrorWith(Error(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where()),
+                  std::move(range)) {}
 };
 
 /// The stiffness is C = kN c(r), r = kT/kN: Poisson's ratio, that is q = G/K, fixes r, then G fixes kN. Two
@@ -82,9 +75,10 @@ class InfeasibleModuli : public Error {
 /// wave speeds and prescribed displacements, is springs_for(..., *Lattice::restrained). The square lattice can show nu
 /// = 0 only.
 /// \throws InfeasibleModuli where nu is out of the range of this assembly, with the range and the nearest feasible
-///         value; Error (bad_input) for other nu than 0 on the square lattice; springs in the assembly file; as
-///         effective_stiffness and springs_for; (computation_failed) as effective_stiffness; where the tolerance is not
-///         reached
+///         value; ErrorWith<Calibration> where the search fails or the user asked to stop, with the springs nearest to
+///         the target among those tried; Error (bad_input) for other nu than 0 on the square lattice; springs in the
+///         assembly file; as effective_stiffness and springs_for; (computation_failed) as effective_stiffness; where
+///         the tolerance is not reached
 Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options = {});
 
 /// The springs that the mean field of Abe (1996), eqs. (21) and (22), advises, and the moduli of the assembly with
