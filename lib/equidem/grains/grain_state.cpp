@@ -83,22 +83,22 @@ bool are_of_scene(const GrainSystem& system, const std::vector<ContactState>& co
 
 namespace {
 
+/// Call visit(member of the state, member of the candidate) for all that a contact by a map carries from step to step.
+template <class State, class Contact, class Visit>
+void each_member(State& state, Contact& candidate, const Visit& visit) {
+  visit(state.parted, candidate.parted), visit(state.mode, candidate.mode), visit(state.steps, candidate.steps);
+  visit(state.overlap, candidate.overlap), visit(state.closing, candidate.closing);
+  visit(state.normal, candidate.normal), visit(state.impulse, candidate.impulse);
+  visit(state.moment, candidate.moment), visit(state.tangential_impulse, candidate.tangential_impulse);
+  visit(state.stretch, candidate.stretch);
+}
+
 /// The lever at a wall is the radius; those of two discs add up to the distance of their centres.
 ContactState state_of(const GrainSystem& system, const Candidate& candidate) {
   const double radius = system.bodies.constants[candidate.i].radius;
   ContactState state;
-  state.i = candidate.i;
-  state.j = candidate.j;
-  state.mode = candidate.mode;
-  state.parted = candidate.parted;
-  state.steps = candidate.steps;
-  state.overlap = candidate.overlap;
-  state.closing = candidate.closing;
-  state.normal = candidate.normal;
-  state.impulse = candidate.impulse;
-  state.moment = candidate.moment;
-  state.tangential_impulse = candidate.tangential_impulse;
-  state.stretch = candidate.stretch;
+  static_cast<Partners&>(state) = {candidate.i, candidate.j};
+  each_member(state, candidate, [](auto& of_state, const auto& own) { of_state = own; });
   state.arm_i = radius * candidate.normal;
   if (candidate.j < 0) return state;
   const double sum = radius + system.bodies.constants[candidate.j].radius;
@@ -106,20 +106,6 @@ ContactState state_of(const GrainSystem& system, const Candidate& candidate) {
   state.arm_i = lever * candidate.normal;
   state.arm_j = (lever - distance) * candidate.normal;
   return state;
-}
-
-void take(const ContactState& state, Candidate& candidate) {
-  candidate.touching = true;
-  candidate.parted = state.parted;
-  candidate.mode = state.mode;
-  candidate.steps = state.steps;
-  candidate.overlap = state.overlap;
-  candidate.closing = state.closing;
-  candidate.normal = state.normal;
-  candidate.impulse = state.impulse;
-  candidate.moment = state.moment;
-  candidate.tangential_impulse = state.tangential_impulse;
-  candidate.stretch = state.stretch;
 }
 
 }  // namespace
@@ -265,7 +251,8 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
       while (candidate != end && (candidate->i != contact.i || candidate->j != contact.j)) ++candidate;
       if (candidate == end)
         bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged", go_on_with);
-      take(contact, *candidate);
+      candidate->touching = true;
+      each_member(contact, *candidate, [](const auto& of_state, auto& own) { own = of_state; });
     }
   }
   system.counters = state.counters;

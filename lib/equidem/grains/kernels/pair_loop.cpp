@@ -15,24 +15,6 @@ using namespace eight;
 /// does not wait for the roots and quotients of one.
 constexpr std::size_t groups_at_once = 8;
 
-template <class Lanes>
-struct LoopNumbers {
-  LawLanes<Lanes> law;  ///< where equal
-  double dt = 0;
-  std::int64_t now = 0;  ///< the step that is being made, as ContactGroup::since
-  bool record = false;
-};
-
-template <ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, const PairLaws* laws) {
-  if constexpr (kind.equal) {
-    return numbers.law;
-  } else {
-    return {numbers.dt * load<Lanes>(laws->stiffness), load<Lanes>(laws->least),
-            sliding_law(load<Lanes>(laws->friction), load<Lanes>(laws->tangential_stiffness), numbers.dt)};
-  }
-}
-
 /// Relative positions and velocities of eight pairs: from i to j, along the normal and across it.
 template <class Lanes>
 struct DiscGeometry {
@@ -50,7 +32,8 @@ struct Outcome {
   bool any;
 };
 
-template <ResponseKind kind, class Lanes>
+/// \tparam cell pairs are with images
+template <ResponseKind kind, bool cell, class Lanes>
 EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const ContactGroup& group, const PairImages* images,
                                    const CellShifts& shifts, DiscGeometry<Lanes>& found) {
   // differences j - i, sums of the speeds of the rims
@@ -63,7 +46,7 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const ContactGroup& g
     m[k] = load<Lanes>(&bodies[group.j[k]].position.x) + as<Lanes>(bits_of(i) ^ turned);
   }
   transpose(m);
-  if (images != nullptr) {
+  if constexpr (cell) {
     const Vectors<Lanes> shift = shift_of<Lanes>(shifts.places, *images);
     const Vectors<Lanes> velocity = shift_of<Lanes>(shifts.velocities, *images);
     m[0] += shift.x;
@@ -209,10 +192,9 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
 
 /// \tparam outward some bodies are behind the block
 template <ResponseKind kind, bool outward, class Lanes>
-EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const PairImages* images, const Outcome<Lanes>& outcome,
-                                const Receivers& to, BodyImpulse*& next, LaneSums<Lanes>& sums) {
+EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
+                                BodyImpulse*& next) {
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
-  if (images != nullptr) add_on_images(outcome.px, outcome.py, *images, sums);
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
   // the tangential impulse turns both bodies the same way round, and its lever is the radius
@@ -231,16 +213,9 @@ struct CollidePairs {
 template <class Law, ResponseKind kind>
 template <class Lanes>
 void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size_t block) {
-  const bool record = system.contacts.record;
-  const PairLaw law = system.contacts.law.value_or(PairLaw{});
-  const LoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
-                                    sliding_law(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
-                                                all<Lanes>(1 / law.tangential_stiffness), system.dt())},
-                                   system.dt(),
-                                   system.step + (system.options.verlet() ? 0 : 1),
-                                   record};
-  list.records.used = record;
-  list.records.resize(record ? list.groups.size() : 0);
+  const LoopNumbers<Lanes> numbers(system);
+  list.records.used = numbers.record;
+  list.records.resize(numbers.record ? list.groups.size() : 0);
   LaneSums<Lanes> sums;
   const PairBody* bodies = system.contacts.pairs.bodies.data();
   const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),
@@ -254,26 +229,26 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size
   const PairLaws* laws = list.laws.data();
   ContactEffects* effects = list.effects.data();
   PairRecords* records = list.records.data();
-  const CellShifts shifts(system.cell);
   const PairImages* images = list.images.used ? list.images.data() : nullptr;
-  const auto images_at = [&](std::size_t g) { return images == nullptr ? nullptr : images + g; };
   for (std::size_t first = 0; first < count; first += groups_at_once) {
     const std::size_t here = std::min(groups_at_once, count - first);
-    for (std::size_t g = 0; g < here; ++g)
-      measure<kind>(bodies, groups[first + g], images_at(first + g), shifts, geometry[g]);
+    for (std::size_t g = 0; images == nullptr && g < here; ++g)
+      measure<kind, false>(bodies, groups[first + g], nullptr, numbers.shifts, geometry[g]);
+    for (std::size_t g = 0; images != nullptr && g < here; ++g)
+      measure<kind, true>(bodies, groups[first + g], images + (first + g), numbers.shifts, geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
       respond_discs<Law, kind>(numbers, bodies, geometry[g], groups[first + g],
                                kind.friction ? slips + (first + g) : nullptr, kind.equal ? nullptr : laws + (first + g),
-                               effects_at<kind>(effects, first + g), record ? records + (first + g) : nullptr, sums,
-                               outcome[g]);
+                               effects_at<kind>(effects, first + g), numbers.record ? records + (first + g) : nullptr,
+                               sums, outcome[g]);
     }
     if (first + here <= list.first_outward) {
-      for (std::size_t g = 0; g < here; ++g)
-        give<kind, false>(groups[first + g], images_at(first + g), outcome[g], to, outward, sums);
+      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward);
     } else {
-      for (std::size_t g = 0; g < here; ++g)
-        give<kind, true>(groups[first + g], images_at(first + g), outcome[g], to, outward, sums);
+      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward);
     }
+    for (std::size_t g = 0; images != nullptr && g < here; ++g)
+      if (outcome[g].any) add_on_images(outcome[g].px, outcome[g].py, images[first + g], sums);
   }
   add(sums, system.bodies.sums[block]);
 }

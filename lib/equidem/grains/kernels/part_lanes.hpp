@@ -166,6 +166,13 @@ struct HardLanes {
   std::int64_t hard[lanes_of_pairs];  ///< 0: not so
   PairLanes branch_x, branch_y, axis_i_x, axis_i_y, axis_j_x, axis_j_y;
   PairLanes gap, normal_x, normal_y, arm_i_x, arm_i_y, arm_j_x, arm_j_y;
+
+  void set(std::size_t k, const EllipseContact& contact) {
+    gap[k] = contact.gap;
+    normal_x[k] = contact.normal.x, normal_y[k] = contact.normal.y;
+    arm_i_x[k] = contact.arm_i.x, arm_i_y[k] = contact.arm_i.y;
+    arm_j_x[k] = contact.arm_j.x, arm_j_y[k] = contact.arm_j.y;
+  }
 };
 
 [[gnu::noinline, gnu::cold]] inline void meet_one_by_one(const ContactRows& of, HardLanes& lanes) {
@@ -176,13 +183,7 @@ struct HardLanes {
         {of.shapes.a_j[k], of.shapes.b_j[k], {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
         {lanes.branch_x[k], lanes.branch_y[k]}, of.group.since[k] > ContactGroup::apart,
         {of.records.normal_x[k], of.records.normal_y[k]}, of.effects == nullptr ? 0 : of.effects->range[k]);
-    lanes.gap[k] = contact.gap;
-    lanes.normal_x[k] = contact.normal.x;
-    lanes.normal_y[k] = contact.normal.y;
-    lanes.arm_i_x[k] = contact.arm_i.x;
-    lanes.arm_i_y[k] = contact.arm_i.y;
-    lanes.arm_j_x[k] = contact.arm_j.x;
-    lanes.arm_j_y[k] = contact.arm_j.y;
+    lanes.set(k, contact);
   }
 }
 
@@ -195,13 +196,7 @@ struct HardLanes {
           contact_by_enlarged_ellipse({of.shapes.a_i[k], of.shapes.b_i[k], {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
                                       {of.shapes.a_j[k], of.shapes.b_j[k], {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
                                       {lanes.branch_x[k], lanes.branch_y[k]});
-    lanes.gap[k] = contact.gap;
-    lanes.normal_x[k] = contact.normal.x;
-    lanes.normal_y[k] = contact.normal.y;
-    lanes.arm_i_x[k] = contact.arm_i.x;
-    lanes.arm_i_y[k] = contact.arm_i.y;
-    lanes.arm_j_x[k] = contact.arm_j.x;
-    lanes.arm_j_y[k] = contact.arm_j.y;
+    lanes.set(k, contact);
   }
 }
 

@@ -29,15 +29,6 @@ struct PartLoopKind {
 };
 
 template <class Lanes>
-struct PartLoopNumbers {
-  LawLanes<Lanes> law;  ///< where equal
-  double dt = 0;
-  std::int64_t now = 0;  ///< the step that is being made, as ContactGroup::since
-  bool record = false;
-  CellShifts shifts;
-};
-
-template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes closing_of(const Standing<Lanes>& s, const Vectors<Lanes>& n, const Vectors<Lanes>& arm_i,
                                        const Vectors<Lanes>& arm_j) {
   return -(dot(s.velocity, n) + (s.spin_j * cross(arm_j, n) - s.spin_i * cross(arm_i, n)));
@@ -46,16 +37,6 @@ template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes slip_of(const Standing<Lanes>& s, const Vectors<Lanes>& n, const Vectors<Lanes>& arm_i,
                                     const Vectors<Lanes>& arm_j) {
   return cross(n, s.velocity) + (s.spin_j * dot(arm_j, n) - s.spin_i * dot(arm_i, n));
-}
-
-template <PartLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbers, const ContactRows& of) {
-  if constexpr (kind.response.equal) {
-    return numbers.law;
-  } else {
-    return {numbers.dt * load<Lanes>(of.laws.stiffness), load<Lanes>(of.laws.least),
-            sliding_law(load<Lanes>(of.laws.friction), load<Lanes>(of.laws.tangential_stiffness), numbers.dt)};
-  }
 }
 
 /// Parts of the arms along and across the normal, and the inverse of the tangential mass at the surfaces.
@@ -214,9 +195,9 @@ inline void push_walls(const GrainSystem& system, const ContactRows& of, const s
 
 /// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
 template <class Law, PartLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, GrainSystem& system,
-                                         const Receivers& to, const ContactRows& of, BodyImpulse*& outward,
-                                         LaneSums<Lanes>& sums, BlockSums& block) {
+EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers<Lanes>& numbers, GrainSystem& system, const Receivers& to,
+                                         const ContactRows& of, BodyImpulse*& outward, LaneSums<Lanes>& sums,
+                                         BlockSums& block) {
   constexpr bool verlet = kind.response.verlet, walls = kind.between == Between::walls;
   const double dt = numbers.dt;
   const auto since = load<Bits<Lanes>>(of.group.since);
@@ -283,8 +264,9 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     memory.rolling = rolling_memory<Lanes>(*of.effects);
     couple_before = lever * memory.rolling.impulse;
   }
-  const ContactLosses<Lanes> losses = respond<Law, kind.response>(
-      law_of<kind>(numbers, of), load<Lanes>(of.group.dashpot), slip_dashpot, motion, at, dt, effect_lanes, memory);
+  const ContactLosses<Lanes> losses =
+      respond<Law, kind.response>(law_of<kind.response>(numbers, &of.laws), load<Lanes>(of.group.dashpot), slip_dashpot,
+                                  motion, at, dt, effect_lanes, memory);
   add_losses<kind.response>(losses, effect_lanes.rolling.lost, at.any, sums);
   const Vectors<Lanes> n = found.normal, t = perpendicular(n);
   Vectors<Lanes> push = memory.impulse * n;
@@ -364,14 +346,7 @@ struct CollideParts {
 template <class Law, PartLoopKind kind>
 template <class Lanes>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearList& list, std::size_t block) {
-  const PairLaw law = system.contacts.law.value_or(PairLaw{});
-  const PartLoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
-                                        sliding_law(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
-                                                    all<Lanes>(1 / law.tangential_stiffness), system.dt())},
-                                       system.dt(),
-                                       system.step + (kind.response.verlet ? 0 : 1),
-                                       system.contacts.record,
-                                       CellShifts(system.cell)};
+  const LoopNumbers<Lanes> numbers(system);
   LaneSums<Lanes> sums;
   const bool shapes = !system.shapes.parts.empty();
   const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),

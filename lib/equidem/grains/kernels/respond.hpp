@@ -66,6 +66,44 @@ struct LawLanes {
   SlidingLaw<Lanes> slip;
 };
 
+/// Periods of a cell, and the velocities to images by one of each.
+struct CellShifts {
+  Periods places, velocities;
+
+  explicit CellShifts(const MovingCell& cell) : places(cell.now) {
+    if (cell.deforms) velocities = {cell.gradient * cell.before.a, cell.gradient * cell.before.b};
+  }
+};
+
+/// What a loop knows of all contacts.
+template <class Lanes>
+struct LoopNumbers {
+  LawLanes<Lanes> law;  ///< where all have the same
+  double dt;
+  std::int64_t now;  ///< the step that is being made, as ContactGroup::since
+  bool record;
+  CellShifts shifts;
+
+  explicit LoopNumbers(const GrainSystem& system)
+      : dt(system.dt()),
+        now(system.step + (system.options.verlet() ? 0 : 1)),
+        record(system.contacts.record),
+        shifts(system.cell) {
+    const PairLaw of = system.contacts.law.value_or(PairLaw{});
+    law = {dt * all<Lanes>(of.stiffness), all<Lanes>(of.least),
+           sliding_law(all<Lanes>(of.friction), all<Lanes>(of.tangential_stiffness),
+                       all<Lanes>(1 / of.tangential_stiffness), dt)};
+  }
+};
+
+/// \param laws not read where all have the same
+template <ResponseKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, const PairLaws* laws) {
+  if constexpr (kind.equal) return numbers.law;
+  return {numbers.dt * load<Lanes>(laws->stiffness), load<Lanes>(laws->least),
+          sliding_law(load<Lanes>(laws->friction), load<Lanes>(laws->tangential_stiffness), numbers.dt)};
+}
+
 /// Losses of normal dashpots in the drift in which contacts begin or end, with one kick of the two. Where a dashpot has
 /// cut the force before the end it takes what the spring holds, k d^(p + 1)/(p + 1).
 /// \param viscous impulse of the dashpot now
@@ -199,15 +237,6 @@ EQUIDEM_ALWAYS_INLINE bool begin_and_end(const Bits<Lanes>& touch, std::int64_t 
   sums.evaluations -= touch;
   return true;
 }
-
-/// Periods of a cell, and the velocities to images by one of each.
-struct CellShifts {
-  Periods places, velocities;
-
-  explicit CellShifts(const MovingCell& cell) : places(cell.now) {
-    if (cell.deforms) velocities = {cell.gradient * cell.before.a, cell.gradient * cell.before.b};
-  }
-};
 
 /// From the second bodies to their images.
 template <class Lanes>

@@ -238,12 +238,6 @@ std::size_t NewList::add(const PairKey& pair, Vec2 apart) {
   return p;
 }
 
-void NewList::leave(const PairKey& pair, bool near, Vec2 apart) {
-  if (near && listed_) keep();
-  if (near && !listed_) add(pair, apart);
-  if (listed_) ++at_;
-}
-
 Partners partners_of(const GrainSystem& system, const NearList& list, std::size_t p) {
   const auto [i, image] = list.pair(p);
   const auto [j, b, a] = image;

@@ -214,7 +214,11 @@ class NewList {
   [[nodiscard]] Vec2 normal_before() const { return listed_ ? old_.normal(at_) : Vec2{}; }
   /// For this pair, if it is apart: keep it where it is near, and list it where it was not.
   /// \param apart a direction along which it is, or {}
-  void leave(const PairKey& pair, bool near, Vec2 apart = {});
+  void leave(const PairKey& pair, bool near, Vec2 apart = {}) {
+    if (near && listed_) keep();
+    if (near && !listed_) add(pair, apart);
+    if (listed_) ++at_;
+  }
   /// A new contact, which is apart, with its constants. \return its place
   std::size_t add(const PairKey& pair, Vec2 apart);
 

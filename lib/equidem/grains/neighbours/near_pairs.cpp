@@ -34,19 +34,18 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   const NeighbourList& list = *system.contacts.neighbours;
   const BodyBlocks& blocks = system.bodies.blocks;
   NewList pairs(system, system.contacts.of(Between::discs).blocks[b], b);
-  const bool shapes = !system.shapes.parts.empty();
+  const bool shapes = !system.shapes.parts.empty(), cell = system.cell.active;
   std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(blocks.begin(b)));
   for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
     const Vec2 centre = system.bodies.motions[i].position;
     const double own = system.bodies.constants[i].radius + system.contacts.pairs.skin.margin + system.range;
     const auto first = static_cast<std::int32_t>(i);
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const PeriodicImage j = system.contacts.neighbour(p);
-      if (system.cell.active ? is_bonded_image(system, first, j)
-                             : are_tied(system.bonds.tied, next_bond, first, j.body))
-        continue;
+      const PeriodicImage j = cell ? system.contacts.images[p] : PeriodicImage{list.partner[p]};
+      if (cell ? is_bonded_image(system, first, j) : are_tied(system.bonds.tied, next_bond, first, j.body)) continue;
       if (shapes && !are_discs(system, first, j.body)) continue;
-      const Vec2 branch = system.bodies.motions[j.body].position - centre + system.cell.now.shift(j);
+      Vec2 branch = system.bodies.motions[j.body].position - centre;
+      if (cell) branch += system.cell.now.shift(j);
       const double far = own + system.bodies.constants[j.body].radius;
       if (!pairs.keep_contact({first, j})) pairs.leave({first, j}, dot(branch, branch) <= far * far);
     }
