@@ -262,7 +262,7 @@ double measured_number(const Delivery& result, const std::string& measure) {
   return *number;
 }
 
-/// Each setting is a run of a verb, in this process.
+/// Each setting is a run of a verb, in this process; on a dry run a dry run of it, whose memory is measured.
 Study study_of_file(const std::filesystem::path& path, const CommonOptions& options) {
   const StudyCase resolved = read_study_case(path);
   if (!std::filesystem::exists(resolved.case_file))
@@ -284,14 +284,16 @@ Study study_of_file(const std::filesystem::path& path, const CommonOptions& opti
       .relative = resolved.relative,
       .truth = resolved.truth,
       .true_value = resolved.value};
+  std::vector<std::string> given(options.quiet ? 1 : 0, "--quiet");
+  if (options.dry_run) given.emplace_back("--dry-run");
+  const std::string measure = options.dry_run ? "peak_bytes" : resolved.measure;
   for (const StudyPoint& point : points_of(resolved)) {
-    study.tasks.push_back({point.setting, [resolved, point, quiet = options.quiet] {
-                             const std::vector<std::string> option(quiet ? 1 : 0, "--quiet");
+    study.tasks.push_back({point.setting, [resolved, point, given, measure] {
                              const auto run =
-                                 std::make_shared<VerbRun>(resolved.verb, resolved.case_file, point.overrides, option);
+                                 std::make_shared<VerbRun>(resolved.verb, resolved.case_file, point.overrides, given);
                              const auto result = std::make_shared<Delivery>();
                              return Trial{.work = [=] { *result = (*run)(); },
-                                          .value = [=] { return measured_number(*result, resolved.measure); }};
+                                          .value = [=] { return measured_number(*result, measure); }};
                            }});
   }
   study.notes = {"Times are of the whole verb without its report and files: reading the case, and computing."};
@@ -416,6 +418,16 @@ int dry_run_study(const StudyVerb& verb, const Study& study) {
   results.line("rounds", fmt::format("{} and one to warm up; then more, until all medians are trusted to {:g} % or "
                                      "--budget {:g} s is spent",
                                      verb.options.least_rounds, 100 * verb.options.time_error, verb.options.budget));
+  double most = 0;
+  for (const StudyTask& task : study.tasks) {
+    const auto refused = failure_of([&] {
+      const Trial trial = task.prepare();
+      trial.work();
+      most = std::max(most, trial.value());
+    });
+    if (refused && refused->kind() == ErrorKind::interrupted) throw Error(*refused);
+  }
+  if (most > 0) results.line("memory").add("peak_bytes", "", most, "at the peak", {Shown::bytes});
   deliver(verb.common, "dry_run", results, {});
   return 0;
 }

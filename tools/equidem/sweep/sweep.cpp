@@ -87,7 +87,6 @@ class SweepRun {
 
  private:
   bool compute_next();  ///< false where nothing is left to do
-  [[nodiscard]] std::size_t points_at_once() const;
   void announce(std::size_t at_once) const;
 
   const Sweep& sweep_;
@@ -103,6 +102,14 @@ class SweepRun {
   std::size_t computed_ = 0;
   bool stopped_ = false;
 };
+
+/// \param left points to be computed
+/// \param bytes of the process with one
+std::size_t points_at_once(std::size_t left, double bytes) {
+  const double most =
+      std::min({static_cast<double>(thread_count()), 1 + available_memory() / bytes, static_cast<double>(left)});
+  return static_cast<std::size_t>(std::max(1.0, most));
+}
 
 SweepPoint point_of(const Sweep& sweep, std::size_t number) {
   SweepPoint point;
@@ -153,7 +160,7 @@ void SweepRun::operator()() {
   try {
     progress_.update(0);
     if (!missing_.empty()) compute_next();
-    const std::size_t at_once = points_at_once();
+    const std::size_t at_once = points_at_once(missing_.size() - computed_, peak_resident_memory());
     announce(at_once);
     at_once == 1 ? compute_all(0, 0) : parallel_tasks(at_once, compute_all);
   } catch (const Error& error) {
@@ -201,12 +208,6 @@ bool SweepRun::compute_next() {
   return true;
 }
 
-std::size_t SweepRun::points_at_once() const {
-  const double most = std::min({static_cast<double>(thread_count()), 1 + available_memory() / peak_resident_memory(),
-                                static_cast<double>(missing_.size()) - static_cast<double>(computed_)});
-  return static_cast<std::size_t>(std::max(1.0, most));
-}
-
 void SweepRun::announce(std::size_t at_once) const {
   constexpr double least_told = 3;  // s
   const double left =
@@ -236,11 +237,20 @@ std::optional<std::pair<std::size_t, Delivery>> first_dry_run(const Sweep& sweep
 int dry_run_sweep(const Sweep& sweep, Results results) {
   const SweepPlan& plan = sweep.plan;
   const SharedAssemblies shared;
+  const double resident = resident_memory();
   results.set("number_of_points", plan.size(), "", "number of points");
   const auto first = first_dry_run(sweep);
   results.block(fmt::format("{} of {}{}\n\n", counted(static_cast<long long>(plan.size()), "point"), plan.names(),
                             first ? fmt::format("; point {}:", first->first + 1) : ""));
   if (first) results.append(first->second.results);
+  if (const Result* const told = find_result(results, "peak_bytes")) {
+    const double one = std::get<double>(told->value.value);
+    const std::size_t at_once = points_at_once(plan.size() - 1, one);
+    results.line("memory of all")
+        .add("peak_bytes", "", std::max(one, resident + static_cast<double>(at_once) * (one - resident)),
+             fmt::format("at the peak, {} at a time", counted(static_cast<long long>(at_once), "point")),
+             {Shown::bytes});
+  }
   deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
   return 0;
 }
