@@ -79,6 +79,31 @@ class Memory(ProgramTest):
              ("run", CASES / "run_pulse.toml",
               ("--set", "assembly.columns=150", "--set", "assembly.rows=150", "--set", "run.duration=1e-5"))]
 
+    def fallen(self):
+        """Discs in rows above a floor, in motion."""
+        radius, side = 0.005, 300
+        rows = (f"{(2 * i + j % 2) * radius * 1.02:.9g},{radius * (1 + 1.77 * j):.9g},{radius}" for j in range(side) for i in range(side))
+        (self.folder / "grains.csv").write_text("x,y,radius\n" + "\n".join(rows) + "\n")
+        case = self.folder / "grains.toml"
+        case.write_text('''schema = "equidem/1"
+[grains]
+density = 2600.0
+path = "grains.csv"
+[collisions]
+law = "linear_dashpot"
+stiffness = 1.0e8
+restitution = 0.3
+friction = 0.3
+[[wall]]
+name = "floor"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[run]
+duration = 2e-4
+gravity = [0.0, -9.81]
+''')
+        return "run", case, ()
+
     def peak(self, *arguments):
         """Of the process, bytes, and its standard output."""
         with open(self.folder / "said", "w+", encoding="utf-8") as said:
@@ -92,7 +117,7 @@ class Memory(ProgramTest):
     def test_a_dry_run_tells_the_memory_that_the_work_takes(self):
         bare, _ = self.peak("solve", CASES / "truss.toml")
         slack = 6e6  # buffers of libraries
-        for verb, case, options in self.CASES:
+        for verb, case, options in (*self.CASES, self.fallen()):
             with self.subTest(verb=verb, case=pathlib.Path(case).name, options=options):
                 for files in ((), ("--out", self.folder / "out", "--overwrite")):
                     told = parse_json(self.peak(verb, case, *options, *files, "--dry-run", "--json", "-")[1])["peak_bytes"]

@@ -169,6 +169,7 @@ struct MoreMemory {
   std::optional<double> inertia;  ///< L D L^T decides it, with so many vectors kept beside it
   double bytes_of_disc = 0;       ///< kept while it solves
   double bytes_of_picture = 0;    ///< drawn when the solver is there no longer
+  int at_once = 1;                ///< solutions beside each other
 };
 /// The problem, further results, size, memory and work of a factorization, for --dry-run.
 Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/calibrate_strengths.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -15,6 +16,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 
 #include "problem.hpp"
 
@@ -179,9 +181,13 @@ std::vector<SeededSample> build_samples(const Problem& first) {
 
 int dry_run_strengths(const CommonOptions& options, Problem& problem) {
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
+  problem.breaks = true;
   Results results;
   add_unused(results, problem.resolved);
-  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
+  const std::int64_t tests = 2 * number_of_samples(problem.resolved);
+  const int at_once = static_cast<int>(std::min<std::int64_t>(thread_count(), tests));
+  deliver(options, "dry_run",
+          dry_run_results(problem, results, AssemblyKeys::size, {.inertia = {}, .at_once = at_once}), problem.times);
   return 0;
 }
 

@@ -46,6 +46,10 @@ class GrainRun final : public RunJob {
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
   [[nodiscard]] std::vector<OutputPart> parts(const RunResult& result) const override;
+  [[nodiscard]] double bytes_of_drawing() const override {
+    constexpr double of_body = 300;  // measured: its row in the tables and in the picture
+    return of_body * static_cast<double>(simulation_.motions().size());
+  }
 
  private:
   struct Snapshot {
