@@ -16,7 +16,11 @@ namespace {
 struct EightPairs {
   std::array<TwoEllipses, 8> pairs;
   std::array<oracle::Found, 8> truth;
-  PartGroup group = {};
+  ContactGroup group = {};
+  PairSlips slips = {};
+  PairLaws laws = {};
+  PairRecords records = {};
+  PartShapes shapes = {};
   std::array<PartBody, 16> bodies = {};
 
   void set(int k, const TwoEllipses& pair, const oracle::Found& found, double turned) {
@@ -32,16 +36,15 @@ struct EightPairs {
     bodies[2 * at + 1].centre = pair.branch;
     const Vec2 n{static_cast<double>(found.n.x), static_cast<double>(found.n.y)};
     const Vec2 last = std::cos(turned) * n + std::sin(turned) * perpendicular(n);
-    const auto number = [&](PartGroup::Column column, double value) { group.numbers[column][k] = value; };
-    number(PartGroup::a_i, pair.i.a);
-    number(PartGroup::b_i, pair.i.b);
-    number(PartGroup::a_j, pair.j.a);
-    number(PartGroup::b_j, pair.j.b);
-    number(PartGroup::share, 0.5);
-    number(PartGroup::arrived, angle_of_arrival(pair.i, pair.j));
-    number(PartGroup::sharpest, roundness(pair.i) * pair.i.b + roundness(pair.j) * pair.j.b);
-    number(PartGroup::normal_x, last.x);
-    number(PartGroup::normal_y, last.y);
+    shapes.a_i[k] = pair.i.a;
+    shapes.b_i[k] = pair.i.b;
+    shapes.a_j[k] = pair.j.a;
+    shapes.b_j[k] = pair.j.b;
+    shapes.share[k] = 0.5;
+    shapes.arrived[k] = angle_of_arrival(pair.i, pair.j);
+    shapes.sharpest[k] = roundness(pair.i) * pair.i.b + roundness(pair.j) * pair.j.b;
+    records.normal_x[k] = last.x;
+    records.normal_y[k] = last.y;
   }
 };
 
@@ -63,10 +66,12 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
       if (truth.gap >= 0 || truth.gap - truth.second < 1e-12L * pair.size()) continue;
       eight.set(k++, pair, truth, std::pow(10, random.uniform(-9, -2)) * (random.uniform(0, 1) < 0.5 ? 1 : -1));
     }
-    const PartGroup before = eight.group;
-    const auto standing = eight::standing_of<false, eight::Eight>(eight.bodies.data(), eight.group);
+    const PairRecords before = eight.records;
+    const ContactRows rows{eight.group, eight.slips, eight.laws, eight.records, eight.shapes, nullptr, nullptr};
+    const auto standing =
+        eight::standing_of<false, eight::Eight>(eight.bodies.data(), rows, eight::CellShifts(MovingCell()));
     const auto all = ~eight::Bits<eight::Eight>{};
-    const auto found = eight::geometry_of_ellipses<false>(eight.group, standing, all, all, nullptr);
+    const auto found = eight::geometry_of_ellipses<false>(rows, standing, all, all);
     for (int k = 0; k < 8; ++k, ++count) {
       const auto at = static_cast<std::size_t>(k);
       const TwoEllipses& pair = eight.pairs[at];
@@ -83,7 +88,7 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
       worst_gap = std::max(worst_gap, gap);
       worst_point = std::max(worst_point, point);
       worst_normal = std::max(worst_normal, turn);
-      const Vec2 last{before.numbers[PartGroup::normal_x][k], before.numbers[PartGroup::normal_y][k]};
+      const Vec2 last{before.normal_x[k], before.normal_y[k]};
       if (contact_of_parts(pair.i, pair.j, pair.branch, true, last).normal != normal) ++by_lanes;
       CAPTURE(count, pair.i.a, pair.i.b, pair.j.a, pair.j.b, pair.branch.x, pair.branch.y, sensitivity, bend);
       if (!(found.touch[k] != 0)) FAIL_CHECK("no contact");
