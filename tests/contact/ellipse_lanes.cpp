@@ -46,7 +46,6 @@ struct EightPairs {
     records.normal_x[k] = last.x;
     records.normal_y[k] = last.y;
   }
-  [[nodiscard]] ContactRows rows() { return {group, slips, laws, records, shapes, nullptr, nullptr}; }
 };
 
 }  // namespace
@@ -68,10 +67,11 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
       eight.set(k++, pair, truth, std::pow(10, random.uniform(-9, -2)) * (random.uniform(0, 1) < 0.5 ? 1 : -1));
     }
     const PairRecords before = eight.records;
+    const ContactRows rows{eight.group, eight.slips, eight.laws, eight.records, eight.shapes, nullptr, nullptr};
     const auto standing =
-        eight::standing_of<false, eight::Eight>(eight.bodies.data(), eight.rows(), eight::CellShifts({}));
+        eight::standing_of<false, eight::Eight>(eight.bodies.data(), rows, eight::CellShifts(MovingCell()));
     const auto all = ~eight::Bits<eight::Eight>{};
-    const auto found = eight::geometry_of_ellipses<false>(eight.rows(), standing, all, all);
+    const auto found = eight::geometry_of_ellipses<false>(rows, standing, all, all);
     for (int k = 0; k < 8; ++k, ++count) {
       const auto at = static_cast<std::size_t>(k);
       const TwoEllipses& pair = eight.pairs[at];

@@ -107,8 +107,9 @@ void GrainSimulation::Implementation::begin() {
     if (system.cell.deforms) begin_cell_stress(system, contacts());
   }
   const auto [potential, kinetic] = potential_and_kinetic();
-  const EnergyLedger stored = contact_energies();
-  at_start = {potential, kinetic + stored.elastic() + stored.cohesion + elastic_of_bonds(system)};
+  const StoredEnergy stored = stored_energy(system);
+  const double elastic = stored.normal + stored.tangential + stored.rolling;
+  at_start = {potential, kinetic + elastic + stored.cohesion + elastic_of_bonds(system)};
 }
 
 void GrainSimulation::advance(std::int64_t steps) {
@@ -316,30 +317,14 @@ std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic
   });
 }
 
-EnergyLedger GrainSimulation::Implementation::contact_energies() const {
-  EnergyLedger ledger;
-  const StoredEnergy stored = stored_energy(system);
-  double &normal = ledger.elastic_normal = stored.normal, &tangential = ledger.elastic_tangential = stored.tangential;
-  ledger.elastic_rolling = stored.rolling;
-  ledger.cohesion = stored.cohesion;
-  // these laws count the spring from the first step of the contact on
-  for (const Candidate& candidate : system.contacts.candidates) {
-    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
-    if (!candidate.touching || candidate.parted) continue;
-    const double overlap = geometry_of(system, candidate).overlap;
-    if (overlap > 0) normal += system.law().energy(candidate.stiffness, overlap);
-  }
-  return ledger;
-}
-
 EnergyLedger GrainSimulation::Implementation::energy() const {
   EnergyLedger ledger = system.lost;
   double potential = 0;
   std::tie(potential, ledger.kinetic) = potential_and_kinetic();
-  const EnergyLedger stored = contact_energies();
-  ledger.elastic_normal = stored.elastic_normal;
-  ledger.elastic_tangential = stored.elastic_tangential;
-  ledger.elastic_rolling = stored.elastic_rolling;
+  const StoredEnergy stored = stored_energy(system);
+  ledger.elastic_normal = stored.normal;
+  ledger.elastic_tangential = stored.tangential;
+  ledger.elastic_rolling = stored.rolling;
   ledger.cohesion = stored.cohesion;
   ledger.elastic_bond = elastic_of_bonds(system);
   ledger.potential = potential - at_start.potential;

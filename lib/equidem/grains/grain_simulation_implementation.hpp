@@ -69,8 +69,6 @@ struct GrainSimulation::Implementation {
   [[nodiscard]] bool keeps_impulses() const { return gives_force(system.options.law) || (collide && system.friction); }
   /// Potential energy of gravity at the time of the velocities, and kinetic energy, J.
   [[nodiscard]] std::pair<double, double> potential_and_kinetic() const;
-  /// Energies that contacts store: springs at the present positions, cohesion at the time of the velocities.
-  [[nodiscard]] EnergyLedger contact_energies() const;
   [[nodiscard]] EnergyLedger energy() const;
   [[nodiscard]] std::vector<GrainContact> contacts() const;
 };

@@ -5,9 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <utility>
 
-#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"

@@ -2,7 +2,6 @@
 #include "equidem/grains/neighbours/contact_list.hpp"
 
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "equidem/geometry/shape_contact.hpp"
@@ -366,6 +365,13 @@ StoredEnergy stored_energy(const GrainSystem& system) {
   each_list(system.contacts, [&](const NearList& list) {
     if (list.between != Between::discs) add(list, all);
   });
+  // these laws count the spring from the first step of the contact on
+  for (const Candidate& candidate : system.contacts.candidates) {
+    all.tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+    if (!candidate.touching || candidate.parted) continue;
+    const double overlap = geometry_of(system, candidate).overlap;
+    if (overlap > 0) all.normal += system.law().energy(candidate.stiffness, overlap);
+  }
   return all;
 }
 

@@ -2,7 +2,6 @@
 #include "equidem/grains/neighbours/near_pairs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

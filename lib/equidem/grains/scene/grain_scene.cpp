@@ -109,7 +109,7 @@ void check_resistance(const PairProperties& pair, NormalLaw law) {
                  "Give rolling_friction > 0");
   if ((pair.cohesion > 0) != (pair.cohesion_range > 0))
     bad_input_at(
-        "cohesion_range",
+        pair.cohesion > 0 ? "cohesion" : "cohesion_range",
         pair.cohesion > 0 ? "cohesion is given without its range" : "a range of cohesion is given without a force",
         "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0, the range in m");
   if (!gives_force(law) && (rolls || pair.cohesion > 0))
