@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/contact/sliding.hpp"
 #include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"

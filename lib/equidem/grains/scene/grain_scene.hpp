@@ -16,7 +16,6 @@
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/contact/restitution.hpp"
-#include "equidem/contact/sliding.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/geometry/shapes.hpp"
 #include "equidem/grains/cell/periodic_cell.hpp"
