@@ -28,8 +28,11 @@ struct DiscGeometry {
 template <class Lanes>
 struct Outcome {
   Lanes px, py, rim;  ///< impulse on j
-  Lanes torque;       ///< with rolling
   bool any;
+  // with friction
+  ContactLosses<Lanes> losses;
+  bool changes;
+  Lanes torque, lost_rolling;  ///< with rolling
 };
 
 /// \tparam cell pairs are with images
@@ -167,7 +170,12 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
   }
   const ContactLosses<Lanes> losses = respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot),
                                                          slip_dashpot, motion, at, numbers.dt, effect_lanes, memory);
-  add_losses<kind>(losses, effect_lanes.rolling.lost, at.any, sums);
+  if constexpr (kind.friction) {
+    outcome.losses = losses;
+    outcome.changes = at.any;
+  } else {
+    add_losses<kind>(losses, Lanes{}, at.any, sums);
+  }
   store(memory.impulse, group.impulse);
   outcome.px = memory.impulse * geometry.nx;
   outcome.py = memory.impulse * geometry.ny;
@@ -180,6 +188,7 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
   }
   if constexpr (kind.rolling) {
     store(memory.rolling, *effects);
+    outcome.lost_rolling = effect_lanes.rolling.lost;
     outcome.torque = load<Lanes>(effects->lever) * memory.rolling.impulse;
   }
   if (numbers.record) {
@@ -193,8 +202,9 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
 /// \tparam outward some bodies are behind the block
 template <ResponseKind kind, bool outward, class Lanes>
 EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
-                                BodyImpulse*& next) {
+                                BodyImpulse*& next, LaneSums<Lanes>& sums) {
   if (!outcome.any) return give_nothing<outward>(group.j, to, next);
+  if constexpr (kind.friction) add_losses<kind>(outcome.losses, outcome.lost_rolling, outcome.changes, sums);
   Row<Lanes> on_i[lanes_of_pairs];
   rows_of(outcome.px, outcome.py, kind.rolling ? outcome.torque : Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
   // the tangential impulse turns both bodies the same way round, and its lever is the radius
@@ -204,15 +214,16 @@ EQUIDEM_ALWAYS_INLINE void give(const ContactGroup& group, const Outcome<Lanes>&
                    [&](std::size_t k) { return kind.friction ? as<Row<Lanes>>(bits_of(on_i[k]) ^ turned) : on_i[k]; });
 }
 
-template <class Law, ResponseKind kind>
+/// \tparam cell pairs are with images
+template <class Law, ResponseKind kind, bool cell>
 struct CollidePairs {
   template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearList& list, std::size_t block);
 };
 
-template <class Law, ResponseKind kind>
+template <class Law, ResponseKind kind, bool cell>
 template <class Lanes>
-void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size_t block) {
+void CollidePairs<Law, kind, cell>::run(GrainSystem& system, NearList& list, std::size_t block) {
   const LoopNumbers<Lanes> numbers(system);
   list.records.used = numbers.record;
   list.records.resize(numbers.record ? list.groups.size() : 0);
@@ -229,13 +240,12 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size
   const PairLaws* laws = list.laws.data();
   ContactEffects* effects = list.effects.data();
   PairRecords* records = list.records.data();
-  const PairImages* images = list.images.used ? list.images.data() : nullptr;
+  const PairImages* images = list.images.data();
   for (std::size_t first = 0; first < count; first += groups_at_once) {
     const std::size_t here = std::min(groups_at_once, count - first);
-    for (std::size_t g = 0; images == nullptr && g < here; ++g)
-      measure<kind, false>(bodies, groups[first + g], nullptr, numbers.shifts, geometry[g]);
-    for (std::size_t g = 0; images != nullptr && g < here; ++g)
-      measure<kind, true>(bodies, groups[first + g], images + (first + g), numbers.shifts, geometry[g]);
+    for (std::size_t g = 0; g < here; ++g)
+      measure<kind, cell>(bodies, groups[first + g], cell ? images + (first + g) : nullptr, numbers.shifts,
+                          geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
       respond_discs<Law, kind>(numbers, bodies, geometry[g], groups[first + g],
                                kind.friction ? slips + (first + g) : nullptr, kind.equal ? nullptr : laws + (first + g),
@@ -243,34 +253,36 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, NearList& list, std::size
                                sums, outcome[g]);
     }
     if (first + here <= list.first_outward) {
-      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward);
+      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward, sums);
     } else {
-      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward);
+      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward, sums);
     }
-    for (std::size_t g = 0; images != nullptr && g < here; ++g)
+    for (std::size_t g = 0; cell && g < here; ++g)
       if (outcome[g].any) add_on_images(outcome[g].px, outcome[g].py, images[first + g], sums);
   }
   add(sums, system.bodies.sums[block]);
 }
 
 template <class Law, ResponseKind kind>
-NearLists::Loop choose_pair_loop() {
-  return by_vector_width<CollidePairs<Law, kind>, GrainSystem&, NearList&, std::size_t>();
+NearLists::Loop choose_pair_loop(bool cell) {
+  return cell ? by_vector_width<CollidePairs<Law, kind, true>, GrainSystem&, NearList&, std::size_t>()
+              : by_vector_width<CollidePairs<Law, kind, false>, GrainSystem&, NearList&, std::size_t>();
 }
 
 template <class Law, bool equal>
 NearLists::Loop choose_pair_loop(const GrainSystem& system) {
+  const bool cell = system.cell.active;
   if constexpr (!equal) {
     if (system.has_effects())
-      return system.options.verlet() ? choose_pair_loop<Law, with_effects<true>>()
-                                     : choose_pair_loop<Law, with_effects<false>>();
+      return system.options.verlet() ? choose_pair_loop<Law, with_effects<true>>(cell)
+                                     : choose_pair_loop<Law, with_effects<false>>(cell);
   }
   if (system.options.verlet()) {
-    return system.friction ? choose_pair_loop<Law, ResponseKind{true, true, equal, equal}>()
-                           : choose_pair_loop<Law, ResponseKind{false, true, equal, equal}>();
+    return system.friction ? choose_pair_loop<Law, ResponseKind{true, true, equal, equal}>(cell)
+                           : choose_pair_loop<Law, ResponseKind{false, true, equal, equal}>(cell);
   }
-  return system.friction ? choose_pair_loop<Law, ResponseKind{true, false, equal, equal}>()
-                         : choose_pair_loop<Law, ResponseKind{false, false, equal, equal}>();
+  return system.friction ? choose_pair_loop<Law, ResponseKind{true, false, equal, equal}>(cell)
+                         : choose_pair_loop<Law, ResponseKind{false, false, equal, equal}>(cell);
 }
 
 }  // namespace
