@@ -258,7 +258,7 @@ struct GrainSystem {
     const double radius = bodies.constants[body].radius;
     return shapes.parts.empty() ? GrainPart{{}, radius, radius, radius} : shapes.parts[number];
   }
-  /// Of a body and another one, or a wall ~j.
+  /// The properties of the contact of a body with another one, or with a wall ~j.
   [[nodiscard]] const PairProperties& properties(std::int32_t i, std::int32_t j) const {
     const int other = j >= 0 ? bodies.constants[j].kind : scene.walls[~j].kind;
     return scene.between(bodies.constants[i].kind, other);

@@ -112,7 +112,6 @@ std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mecha
   auto factor = multifrontal_ldlt(system.symbolic, system.k);
   if (mechanisms == Mechanisms::hold && is_mechanism(system, *factor)) {
     // By the usual threshold a pivot that is zero has outgrown its round-off, and was taken for one that is not.
-    factor.reset();  // before the next takes its memory
     factor = multifrontal_ldlt(system.symbolic, system.k, {.threshold = 0.1});
   }
   if (factor->report().zero_pivots > 0) {

@@ -33,7 +33,6 @@ void TangentSolver::factorize() {
   base_ = now_;
   changed_.clear();
   columns_.clear();
-  factor_.reset();  // before the next takes its memory
   factor_ = umfpack_lu(contacts_.matrix(base_, ground_), 1);
   ++factorizations_;
   if (factor_ != nullptr) return;

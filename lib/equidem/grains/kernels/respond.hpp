@@ -75,7 +75,7 @@ struct CellShifts {
   }
 };
 
-/// What a loop knows of all contacts.
+/// The numbers that all contacts of a loop share.
 template <class Lanes>
 struct LoopNumbers {
   LawLanes<Lanes> law;  ///< where all have the same

@@ -109,7 +109,7 @@ void copy_lane(const Rows& from, std::size_t from_lane, Rows& to, std::size_t to
     std::memcpy(target + row + to_lane * sizeof(double), source + row + from_lane * sizeof(double), sizeof(double));
 }
 
-/// What the contacts of a list are between.
+/// The partners of the contacts of a list.
 enum class Between { discs, round_parts, ellipses, walls };
 
 /// A pair in the order of lists: i and an image of j, as bodies or parts; or a wall j.

@@ -16,7 +16,7 @@ namespace {
 /// many cost as much as lists found anew.
 constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
-/// Of bodies of a size (discs: the radius) that move by about `reach` in a step.
+/// The margin for bodies of a size (discs: the radius) that move by about `reach` in a step.
 double margin_of(const GrainSystem& system, double size, double reach) {
   const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
   return std::min(wanted, system.contacts.skin.margin);
