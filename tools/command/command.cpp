@@ -414,8 +414,7 @@ class Deliverer {
 void deliver(const CommonOptions& options, const std::string& given_status, Results results, StageTimes times,
              const std::vector<OutputPart>& parts, const std::optional<Error>& failure) {
   const bool interrupted = given_status == "interrupted" || (failure && failure->kind() == ErrorKind::interrupted);
-  std::optional<StopsHeldBack> held_back;
-  if (interrupted) held_back.emplace();
+  const StopsHeldBack held_back(interrupted);
   const std::string status = interrupted ? "interrupted" : failure ? "failed" : given_status;
   if (failure) {
     const std::string where = failure->where().empty() ? "" : failure->where() + ": ";

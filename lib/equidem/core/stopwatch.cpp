@@ -149,12 +149,15 @@ thread_local int holds_of_stops = 0;
 
 }  // namespace
 
-StopsHeldBack::StopsHeldBack() {
-  ++holds_of_stops;
+StopsHeldBack::StopsHeldBack(bool held) : held_(held) {
+  holds_of_stops += held_ ? 1 : 0;
 }
 
+StopsHeldBack::StopsHeldBack(const std::optional<Error>& failure)
+    : StopsHeldBack(failure && failure->kind() == ErrorKind::interrupted) {}
+
 StopsHeldBack::~StopsHeldBack() {
-  --holds_of_stops;
+  holds_of_stops -= held_ ? 1 : 0;
 }
 
 bool StopsHeldBack::any() {

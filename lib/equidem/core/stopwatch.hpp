@@ -7,9 +7,12 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "equidem/core/error.hpp"
 
 namespace equidem {
 
@@ -80,13 +83,18 @@ void stop_if_interrupted();
 /// before the user asked to stop is evaluated and written to its end.
 class StopsHeldBack {
  public:
-  StopsHeldBack();
+  explicit StopsHeldBack(bool held = true);
+  /// Where the failure is that the user asked to stop.
+  explicit StopsHeldBack(const std::optional<Error>& failure);
   ~StopsHeldBack();
   StopsHeldBack(const StopsHeldBack&) = delete;
   StopsHeldBack& operator=(const StopsHeldBack&) = delete;
 
   /// Whether one exists for this thread.
   [[nodiscard]] static bool any();
+
+ private:
+  bool held_;
 };
 
 /// For programs that handle SIGINT themselves: while one exists, Ctrl-C asks the running computation to stop;

@@ -56,8 +56,7 @@ struct Job {
 
   void work(int worker) {
     inside_task = true;
-    std::optional<StopsHeldBack> held_back;
-    if (stops_held_back) held_back.emplace();
+    const StopsHeldBack held_back(stops_held_back);
     for (std::size_t k = 0; k < shares.size(); ++k)
       work(shares[(static_cast<std::size_t>(worker) + k) % shares.size()], worker);
     inside_task = false;

@@ -434,8 +434,7 @@ int calibrate(const CalibrateVerb& options) {
     failure.emplace(failure->kind(), failure->problem(), "the springs are found, and not compared with the mean field",
                     "");
   times.add("mean field", watch.lap());
-  std::optional<StopsHeldBack> held_back;
-  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(failure);
   problem.springs = {
       bending_springs(problem.assembly, contact_springs(problem.assembly, found.springs, resolved.weighting),
                       resolved.bending),

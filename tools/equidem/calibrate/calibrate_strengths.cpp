@@ -273,8 +273,7 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
     }
   });
   problem.times.add("tests", watch.lap());
-  std::optional<StopsHeldBack> held_back;
-  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(failure);
   strengths.tension = found.tension;
   strengths.shear = found.shear;
   strengths.friction = found.friction;

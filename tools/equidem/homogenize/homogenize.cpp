@@ -639,8 +639,7 @@ int homogenize(const HomogenizeVerb& options) {
   const BoundedStiffness& homogenized = *shared_stiffness;
   const EffectiveStiffness& result = homogenized.result;
   const auto harmonic = std::make_shared<const std::optional<Harmonic>>(harmonic_of(problem, result.boundary, failure));
-  std::optional<StopsHeldBack> held_back;
-  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
   times.add(result.times);
   if (*harmonic) times.add((*harmonic)->stiffness.times);

@@ -322,8 +322,7 @@ int run(const CommonOptions& common) {
       std::make_shared<GrainPacking>(located(resolved, "method", [&] { return try_to_pack(resolved.packing); }));
   GrainPacking& packing = *shared_packing;
   times.add("packing", watch.lap());
-  std::optional<StopsHeldBack> held_back;
-  if (packing.failure && packing.failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(packing.failure);
   Assembly network = network_of(packing, resolved.network);
   const double density = body_density(resolved, network);
   times.add("network", watch.lap());

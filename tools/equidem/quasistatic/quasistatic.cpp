@@ -298,11 +298,8 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     }
   });
   stop.interrupted = stop.failure && stop.failure->kind() == ErrorKind::interrupted;
-  std::optional<StopsHeldBack> held_back;
-  if (stop.interrupted) {
-    stop.failure.reset();
-    held_back.emplace();
-  }
+  if (stop.interrupted) stop.failure.reset();
+  const StopsHeldBack held_back(stop.interrupted);
   if (stop.failure) {
     const std::string& why = stop.failure->why();
     run.fail(stop.failure->problem() + (why.empty() ? "" : ": " + why));
@@ -341,8 +338,7 @@ int quasistatic(const QuasistaticOptions& given) {
   }
   write_case(options, sequence.problem.resolved);
   const Stop stop = go(options, sequence, frames);
-  std::optional<StopsHeldBack> held_back;
-  if (stop.interrupted) held_back.emplace();
+  const StopsHeldBack held_back(stop.interrupted);
   const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
                                    sequence.residual_friction()};
   Results results = quasistatic_results(outcome, sequence.run());

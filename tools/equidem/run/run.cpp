@@ -80,8 +80,7 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   if (failure && failure->kind() == ErrorKind::bad_input && result.steps_done == 0) throw *failure;
   if (!failure && search != nullptr && !search->accepts(searched_values(job.simulation().motions()), result.seconds))
     return false;
-  std::optional<StopsHeldBack> held_back;
-  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(failure);
   StageTimes times = job.times();
   times.add("steps", result.seconds);
   Results results = run_results(job, plan, result, failure.has_value());
@@ -102,8 +101,7 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
   Results results;
   const std::optional<Error> failure = failure_of([&] { results = job.relax(times); });
   if (failure && failure->kind() == ErrorKind::bad_input) throw *failure;
-  std::optional<StopsHeldBack> held_back;
-  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(failure);
   if (failure) results = job.scene();
   results.set("complete", true);
   deliver_run(options, "at_rest", std::move(results), std::move(times), shared_job, std::make_shared<const RunResult>(),

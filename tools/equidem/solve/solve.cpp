@@ -251,8 +251,7 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
     }
     effects = solver.effects();
   }
-  std::optional<StopsHeldBack> held_back;
-  if (failure && failure->kind() == ErrorKind::interrupted) held_back.emplace();
+  const StopsHeldBack held_back(failure);
 
   StageTimes times = problem.times;
   for (const SolvedCase& result : results) {
