@@ -254,6 +254,14 @@ class Interrupted(ProgramTest):
         self.assertIn(f"{done} of 200 frequencies are done", result["failure"])
         self.assertEqual(len((out / "viscoelastic.csv").read_text().splitlines()), done + 1)
 
+    def test_the_stability_found_until_an_interruption_is_delivered(self):
+        result, report, out = self.part_of("stability", CASES / "random_cell.toml", "--set", "assembly.discs=20000",
+                                           "--set", "assembly.density=2600.0")
+        self.assertIn("found as far as the ", result["failure"])
+        self.assertEqual(result["mechanisms"]["count"], 0)
+        self.assertNotIn("critical_ratio", result)
+        self.assertNotIn("stable in statics", report)
+
 
 class Inputs(ProgramTest):
     def test_no_result_replaces_an_input_of_its_case(self):

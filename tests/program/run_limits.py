@@ -64,6 +64,8 @@ class Memory(ProgramTest):
              ("solve", TENSION, (*BLOCK, "--set", "springs.kT=-0.1e9")),
              ("homogenize", CELL, ("--set", "assembly.discs=20000", "--set", "homogenize.bounds=affine")),
              ("homogenize", CELL, ("--set", "assembly.discs=20000")),
+             ("homogenize", ENSEMBLE, ("--set", "ensemble.discs=[2000, 19000]", "--set", "ensemble.samples=2")),
+             ("homogenize", ENSEMBLE, ("--set", "ensemble.discs=[40000]", "--set", "ensemble.samples=2")),
              ("quasistatic", CASES / "notched_plate.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
              ("quasistatic", CASES / "frictional_notch.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
              ("homogenize", CASES / "viscoelastic_cell.toml",
@@ -73,6 +75,7 @@ class Memory(ProgramTest):
              ("calibrate", CASES / "calibrate_random.toml", ("--set", "assembly.discs=50000")),
              ("sweep", TENSION, (*BLOCK, "--key", "ratio", "--values", "0,0.1,0.2,0.3")),
              ("study", SOURCE / "data" / "studies" / "abe_lattice.toml", ("--rounds", 3, "--budget", 0)),
+             ("export", TENSION, (*BLOCK, "--to", "lammps")), ("export", TENSION, (*BLOCK, "--to", "matrix-market")),
              ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=50000", "--set", "packing.box=none", *LOOSE)),
              ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=200000", "--set", "packing.box=none", "--set",
                                                    "packing.method=insertion", "--set", "packing.overlap=none", *LOOSE)),
@@ -119,7 +122,7 @@ gravity = [0.0, -9.81]
         slack = 6e6  # buffers of libraries
         for verb, case, options in (*self.CASES, self.fallen()):
             with self.subTest(verb=verb, case=pathlib.Path(case).name, options=options):
-                for files in ((), ("--out", self.folder / "out", "--overwrite")):
+                for files in ((), ("--out", self.folder / "out", "--overwrite"))[verb == "export":]:
                     told = parse_json(self.peak(verb, case, *options, *files, "--dry-run", "--json", "-")[1])["peak_bytes"]
                     taken, _ = self.peak(verb, case, *options, *files)
                     shown = f"told {told / 1e6:.0f} MB, taken {taken / 1e6:.0f} MB, {bare / 1e6:.0f} MB of it for any case; {files}"

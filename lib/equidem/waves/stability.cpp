@@ -19,6 +19,26 @@ namespace {
 constexpr std::size_t most_discs_of_antiperiodic = 20000;
 constexpr double no_critical_ratio = -std::numeric_limits<double>::infinity();
 
+const char* name_of(StabilityStage stage) {
+  switch (stage) {
+    case StabilityStage::inertia:
+      return "inertia";
+    case StabilityStage::critical_load:
+      return "critical load";
+    case StabilityStage::time_step:
+      return "time step";
+    case StabilityStage::natural_frequencies:
+      return "natural frequencies";
+    case StabilityStage::waves:
+      return "waves";
+    case StabilityStage::continuum:
+      return "homogenized continuum";
+    case StabilityStage::critical_ratio:
+      break;
+  }
+  return "critical kT/kN";
+}
+
 std::optional<double> common_ratio(const Assembly& assembly, const ContactSprings& springs) {
   const double first = springs[0].ratio();
   for (std::size_t c = 1; !springs.uniform() && c < assembly.contacts.size(); ++c)
@@ -114,10 +134,12 @@ void add_frequencies(const Assembly& assembly, const ContactSprings& springs, st
     s.lowest = extreme_squared_frequency(assembly, springs, unknowns, inertia, SpectrumEnd::smallest);
   s.rules = time_step_rules(assembly, springs, inertia, s.effects.rotation);
   s.times.add("highest frequency", watch.lap());
+  s.reached = StabilityStage::time_step;
   if (springs.any_negative() || options.natural_frequencies == 0) return;
   s.natural = natural_frequencies(assembly, springs, unknowns, inertia,
                                   {.count = options.natural_frequencies, .solver = options.solver});
   s.times.add("natural frequencies", watch.lap());
+  s.reached = StabilityStage::natural_frequencies;
 }
 
 void add_waves(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
@@ -159,6 +181,34 @@ void add_without_prestress(const Assembly& assembly, const ContactSprings& sprin
   add_frequencies(assembly, springs, supports, inertia, options, s);
   s.natural.why_none = "forces at rest count, and frequencies are those of springs alone";
   s.critical = {.sought = false, .searched = "forces at rest count, and do not change with kT/kN"};
+  s.reached = StabilityStage::critical_ratio;
+}
+
+/// The stages behind the inertia.
+void find_stages(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                 const std::vector<Inertia>& inertia, const StabilityOptions& options, Stability& s) {
+  Stopwatch watch;
+  if (springs.prestressed()) {
+    s.critical_load = find_critical_load(assembly, springs, supports,
+                                         {.rotation = options.rotation, .memory_limit = options.solver.memory_limit});
+    s.times.add("critical load", watch.lap());
+    s.reached = StabilityStage::critical_load;
+    add_without_prestress(assembly, springs.with_prestress({}), supports, inertia, options, s);
+    return;
+  }
+  add_frequencies(assembly, springs, supports, inertia, options, s);
+  watch.lap();
+  if (assembly.periodic()) {
+    add_waves(assembly, springs, inertia, options.rotation, s);
+    s.times.add("waves", watch.lap());
+    s.reached = StabilityStage::waves;
+    add_continuum(assembly, springs, options, s);
+    s.times.add("continuum", watch.lap());
+    s.reached = StabilityStage::continuum;
+  }
+  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options);
+  s.times.add("critical ratio", watch.lap());
+  s.reached = StabilityStage::critical_ratio;
 }
 
 }  // namespace
@@ -189,23 +239,12 @@ Stability analyze_stability(const Assembly& assembly, const ContactSprings& spri
   s.mechanisms = find_mechanisms(assembly, springs, options.rotation, supports);
   s.inertia = find_inertia(assembly, springs, options.rotation, supports);
   s.times.add("inertia", watch.lap());
-  if (springs.prestressed()) {
-    s.critical_load = find_critical_load(assembly, springs, supports,
-                                         {.rotation = options.rotation, .memory_limit = options.solver.memory_limit});
-    s.times.add("critical load", watch.lap());
-    add_without_prestress(assembly, springs.with_prestress({}), supports, inertia, options, s);
-    return s;
+  try {
+    find_stages(assembly, springs, supports, inertia, options, s);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::bad_input) throw;
+    throw ErrorWith(error, fmt::format("found as far as the {}", name_of(s.reached)), std::move(s));
   }
-  add_frequencies(assembly, springs, supports, inertia, options, s);
-  watch.lap();
-  if (assembly.periodic()) {
-    add_waves(assembly, springs, inertia, options.rotation, s);
-    s.times.add("waves", watch.lap());
-    add_continuum(assembly, springs, options, s);
-    s.times.add("continuum", watch.lap());
-  }
-  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options);
-  s.times.add("critical ratio", watch.lap());
   return s;
 }
 

@@ -32,6 +32,9 @@ struct StabilityOptions {
   int natural_frequencies = 4;  ///< number of the lowest, >= 0
 };
 
+/// In the order in which they are found; what an assembly does not have is left out.
+enum class StabilityStage { inertia, critical_load, time_step, natural_frequencies, waves, continuum, critical_ratio };
+
 /// The critical ratio and the motion that loses its stiffness there.
 struct CriticalMotion {
   bool sought = true;                      ///< false: see `searched`
@@ -43,6 +46,7 @@ struct CriticalMotion {
 };
 
 struct Stability {
+  StabilityStage reached = StabilityStage::inertia;  ///< the last that is found; members of later ones are empty
   Effects effects;
   std::optional<double> ratio;  ///< kT/kN, where all contacts have the same (to round-off)
   MechanismReport mechanisms;
@@ -71,7 +75,8 @@ struct Stability {
 
 /// \param supports of a free assembly; without any it is judged as a free body
 /// \throws Error (bad_input) where no contact joins any disc or the supports hold every disc, and as check_magnitudes;
-///         (computation_failed) where the highest frequency is not found
+///         ErrorWith<Stability> where a stage behind the inertia fails (the highest frequency is not found) or the user
+///         asked to stop
 Stability analyze_stability(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
                             const StabilityOptions& options = {});
 

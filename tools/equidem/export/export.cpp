@@ -16,6 +16,7 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/time_step.hpp"
@@ -37,6 +38,7 @@ struct Exported {
   std::function<void(const CommonOptions&)> write_case = {};
   Results results = {};  ///< lines of the report
   std::vector<OutputPart> files = {};
+  double bytes_of_text = 0;  ///< the largest text that is made when its file is written
 
   /// \param text is made when the file is written
   void add(const std::string& name, std::function<std::string()> text) {
@@ -268,6 +270,7 @@ Exported export_to_matrix_market(const ExportOptions& options) {
   const auto text_of = [system](const auto& part, const std::string& comment) {
     return [=] { return matrix_market((*system).*part, fmt::format("{}\n{}", comment, units)); };
   };
+  made.bytes_of_text = bytes_of_text(system->stiffness);
   made.add(stiffness_file, text_of(&LinearSystem::stiffness, "K, lower triangle, Pa"));
   made.add(loads_file,
            text_of(&LinearSystem::right_hand_sides, fmt::format("f, N/m; columns: {}", joined(system->names))));
@@ -304,6 +307,11 @@ int export_case(const ExportOptions& options) {
   for (const OutputPart& file : made.files) plan.expect(file.name);
   made.results.line("files", joined(made.files, &OutputPart::name)).set("format", format.name);
   made.files.insert(made.files.begin(), {"case.toml", made.write_case});
+  if (options.dry_run) {
+    made.results.line("memory").add("peak_bytes", "",
+                                    std::max(peak_resident_memory(), resident_memory() + made.bytes_of_text),
+                                    "at the peak", {Shown::bytes});
+  }
   deliver(options, options.dry_run ? "dry_run" : "done", made.results, made.times,
           options.dry_run ? std::vector<OutputPart>{} : made.files);
   return 0;

@@ -15,6 +15,7 @@
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_accuracy.hpp"
@@ -465,6 +466,32 @@ void require_memory_of_cells(Case resolved, const EnsemblePlan& plan) {
   require_memory_for(resolved, Purpose::factorize);
 }
 
+/// Bytes of cells with their solutions, as many as are computed beside each other. Packings are not packed for it: the
+/// smallest is measured, and its solution takes N log N.
+/// \param cells of each size
+double bytes_of_cells(const Case& resolved, const std::vector<EnsembleSetting>& cells, std::uint64_t seed) {
+  const std::int64_t smallest = std::ranges::min(cells, {}, &EnsembleSetting::discs).discs;
+  const auto& packing = resolved.assembly.packing;
+  double most = 0;
+  for (const auto& [discs, samples] : cells) {
+    const Assembly cell = first_cell(resolved, packing ? smallest : discs, seed);
+    const SolveEstimate estimate = estimate_solve(cell, build_springs(resolved, cell).springs, {},
+                                                  {.rotation = resolved.rotation, .solver = resolved.solver});
+    const double n = static_cast<double>(discs), measured = static_cast<double>(cell.size());
+    const double solved =
+        bytes_of_network(n) + estimate.peak_bytes * n * std::log(n + 1) / (measured * std::log(measured + 1));
+    const double packed = packing ? entry_of(packing->method).bytes_of_body * n : 0;
+    most = std::max(most, std::min(cells_at_once(discs), samples) * std::max(solved, packed));
+  }
+  return most;
+}
+
+Results memory_of_cells(const Case& resolved, const std::vector<EnsembleSetting>& cells, std::uint64_t seed) {
+  const double resident = resident_memory();
+  return Results().line("memory").add("peak_bytes", "about", resident + bytes_of_cells(resolved, cells, seed),
+                                      "at the peak, of the cells computed at once", {Shown::bytes});
+}
+
 int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
   const BuiltSprings springs = build_springs(resolved, first_cell(resolved, plan.discs.front(), plan.first_seed));
   const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
@@ -473,9 +500,13 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
     unknowns.push_back(discs * unknowns_per_disc);
     results.line("unknowns", fmt::format("about {} in each cell of {} discs", unknowns.back(), discs));
   }
+  std::vector<EnsembleSetting> cells;
+  for (const std::int64_t discs : plan.discs) cells.push_back({discs, plan.samples});
   try {
     require_memory_of_cells(resolved, plan);
+    results.append(memory_of_cells(resolved, cells, plan.first_seed));
   } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
     results.set("refusal", error.what());
     results.line("memory", fmt::format("The computation would be refused: {}", error.what()));
   }
@@ -647,6 +678,8 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
     results.append(accuracy_plan(accuracy, fmt::format("first {}; the size and number of cells that reach it follow "
                                                        "from them, with at most {:.0e} discs in all",
                                                        joined(pilots, " and "), wanted.most_discs)));
+    const auto pilot_cells = accuracy_pilots(wanted);
+    results.append(memory_of_cells(resolved, {pilot_cells.begin(), pilot_cells.end()}, wanted.first_seed));
     deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
     return 0;
   }

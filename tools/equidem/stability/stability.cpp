@@ -341,11 +341,12 @@ Results stability_results(const Problem& problem, const Stability& s) {
   Results out = problem_results(problem, s.effects, AssemblyKeys::size);
   if (problem.resolved.ensemble)
     out.line("not used", "[ensemble]: the one assembly of [assembly] is judged, with its seed");
-  if (periodic && !s.critical_load) add_waves(out, s);
+  if (periodic && !s.critical_load && s.reached >= StabilityStage::waves) add_waves(out, s);
   add_mechanisms(out, s, periodic);
   add_inertia(out, s);
   if (s.critical_load) add_critical_load(out, *s.critical_load, problem.assembly);
-  add_critical(out, s);
+  if (s.reached >= StabilityStage::critical_ratio) add_critical(out, s);
+  if (s.reached < StabilityStage::time_step) return out;
   add_growth(out, s, periodic);
   add_natural_frequencies(out, s, problem.assembly);
   add_time_step(out, s, disc_density(problem.resolved, problem.assembly), problem.resolved.assembly.body);
@@ -592,9 +593,18 @@ int stability(const StabilityCommand& options) {
   if (options.dry_run) return dry_run_survey(options, std::move(built));
   const auto shared_problem = std::make_shared<const Problem>(prestressed(under_loads(std::move(built))));
   const Problem& problem = *shared_problem;
-  const auto shared_result = std::make_shared<const Stability>(
-      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options)));
+  std::optional<Error> failure;
+  const auto shared_result = std::make_shared<const Stability>([&] {
+    try {
+      return analyze_stability(problem.assembly, problem.springs.springs, problem.supports,
+                               options_of(problem, options));
+    } catch (const ErrorWith<Stability>& ended) {
+      failure = ended;
+      return ended.found();
+    }
+  }());
   const Stability& result = *shared_result;
+  const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
   times.add(result.times);
   const std::vector<OutputPart> parts{
@@ -603,7 +613,7 @@ int stability(const StabilityCommand& options) {
        OutputPart::page},
       {"the mode", [=](const CommonOptions& into) { draw_mode(into, *shared_problem, *shared_result); },
        OutputPart::page}};
-  deliver(options, result.status(), stability_results(problem, result), std::move(times), parts);
+  deliver(options, result.status(), stability_results(problem, result), std::move(times), parts, failure);
   if (arrays_wanted() && result.critical_load && !result.critical_load->motion.empty())
     hand_over(motion_arrays("buckling/", {shared_result, &result.critical_load->motion}));
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));

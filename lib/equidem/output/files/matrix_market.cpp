@@ -25,12 +25,17 @@ std::string banner(std::string_view kind, const std::string& comment, std::int64
   return text;
 }
 
+constexpr double bytes_of_entry = 36;  // two indices and a number
+
 }  // namespace
 
+double bytes_of_text(const CompressedColumns& lower) {
+  return bytes_of_entry * static_cast<double>(lower.first.back());
+}
+
 std::string matrix_market(const CompressedColumns& lower, const std::string& comment) {
-  constexpr double bytes = 36;  // two indices and a number
   const std::int64_t entries = lower.first.back();
-  std::string text = banner("coordinate real symmetric", comment, entries, bytes);
+  std::string text = banner("coordinate real symmetric", comment, entries, bytes_of_entry);
   const auto end = std::back_inserter(text);
   fmt::format_to(end, "{} {} {}\n", lower.size, lower.size, entries);
   for (std::int64_t c = 0; c < lower.size; ++c) {

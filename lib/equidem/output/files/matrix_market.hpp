@@ -12,6 +12,9 @@
 
 namespace equidem {
 
+/// Of the file of a symmetric matrix.
+double bytes_of_text(const CompressedColumns& lower);
+
 /// A symmetric matrix by its lower triangle: "coordinate real symmetric".
 /// \param comment lines that the file begins with
 /// \throws Error (computation_failed) where memory would not suffice for the text
