@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/core/simd.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "grains/cell_scenes.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Bonds that carry moments and break.
-#include "equidem/grains/contacts/bond_breaking.hpp"
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +8,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/statics/equilibrium.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/waves/natural_frequencies.hpp"

@@ -3,7 +3,7 @@
 /// How long a step bonds allow, what they lose, and what must not change a bit.
 #include <limits>
 
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "support/catch.hpp"

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 
 #include "grains/scenes.hpp"
 

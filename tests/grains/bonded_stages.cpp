@@ -3,7 +3,7 @@
 /// Runs in stages of discs that are bonded, or become so.
 #include <map>
 
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 

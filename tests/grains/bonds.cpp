@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Discs tied by dashpots (Sukegawa 2010, chapter 5).
+#include "equidem/grains/contacts/bonds.hpp"
+
 #include <limits>
 #include <set>
 #include <utility>
 
 #include "equidem/contact/finite_bond.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "support/bond_rates.hpp"

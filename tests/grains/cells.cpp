@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/scene/shaking.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/motion/wall.hpp"
 
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"

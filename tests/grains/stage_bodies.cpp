@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Bodies that stages remove, rename and add.
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "grains/resuming.hpp"

@@ -6,9 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/scene/shaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
+#include "equidem/motion/wall.hpp"
 #include "equidem/packing/packing.hpp"
 
 #include "hard_cases/bodies.hpp"

@@ -17,8 +17,8 @@
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
-#include "equidem/grains/scene/shaking.hpp"
 #include "equidem/motion/any_simulation.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 

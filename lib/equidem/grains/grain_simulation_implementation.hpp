@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/grain_system.hpp"

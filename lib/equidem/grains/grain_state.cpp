@@ -7,8 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
@@ -223,7 +222,7 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   system.lost = state.lost;
   system.bodies.motions = state.motions;
   if (!state.impulses.empty()) system.bodies.impulses = state.impulses;
-  system.bodies.cleared = false;
+  system.bodies.at_zero = false;
   restore_breaks(system, state.breaks);
   take_states(system, state.bonds);
   system.walls.loads = state.walls;

@@ -12,8 +12,7 @@
 #include "equidem/contact/sliding.hpp"
 #include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/kernels/bond_loop.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
@@ -149,9 +148,9 @@ struct GrainBodies {
   std::vector<GrainBody> constants;
   std::vector<GrainMotion> motions;
   std::vector<GrainMotion> next;  ///< motions after the present step
-  bool in_place = false;          ///< they are in `motions` instead: nobody has asked for those before
+  bool moved = false;             ///< those after the present step stand in `motions`, and `next` is not used
   std::vector<BodyImpulse> impulses;
-  bool cleared = false;                      ///< the motion of the step sets them to zero: nobody asks for them later
+  bool at_zero = false;                      ///< the impulses, once the bodies of a block have moved
   std::vector<BodyImpulse> impulses_before;  ///< of the previous step; stored if candidate_loop() needs them
   /// Maps: mass times shift of the position, kg m. exact_flow: integral of (dt - t) force dt, N s². Other laws: empty.
   std::vector<Vec2> moments;

@@ -12,8 +12,7 @@
 ///   Kick      velocities advance by impulses
 ///   Count     losses, loads of walls and counters of the blocks are added up
 #include "equidem/grains/contacts/block_step.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
@@ -34,13 +33,13 @@ void list_and_guard(GrainSystem& system) {
   refuse_long_ways_in_cell(system, reach);
   refresh_candidates(system, reach);
   if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
-  if (system.bodies.in_place) find_places_before(system);
+  if (system.bodies.moved) find_places_before(system);
   refuse_crossings(system);
 }
 
 /// Bodies, walls and axes go on to the end of the step. Steer: walls.
 void go_on(GrainSystem& system) {
-  if (!system.bodies.in_place) system.bodies.motions.swap(system.bodies.next);
+  if (!system.bodies.moved) system.bodies.motions.swap(system.bodies.next);
   if (system.cell.deforms) advance_cell(system);
   ++system.step;
   if (!system.walls.servos.empty()) steer_walls(system);

@@ -2,7 +2,7 @@
 # yade -n -x -j1 laboratory_yade.py TEST SAMPLE STEP [MORE...]
 # A test of the laboratory in YADE, with the discs of a case (CSV: x,y,radius,...), its springs, stages and time step STEP (s). Tests and
 # what they want MORE: biaxial (left, bottom, right, top of a sample at rest; none: a loose one), shear_box (height of the lid of a sample
-# at rest), repose (friction), hopper, unconfined and brazilian (CSV of the bonds, i,j), beam. Discs are spheres in a plane with the
+# at rest), repose (friction, and rolling friction where there is some), hopper, unconfined and brazilian (CSV of the bonds, i,j), beam. Discs are spheres in a plane with the
 # masses and moments of discs. Prints one line of JSON.
 import csv
 import json
@@ -39,8 +39,10 @@ def springs(kn, ks):
 
 def engines(contact, law, shapes, *more):
     shape_of, pairs = shapes
+    rolls = isinstance(law, Law2_ScGeom6D_CohFrictPhys_CohesionMoment)
+    spheres = Ig2_Sphere_Sphere_ScGeom6D if rolls else Ig2_Sphere_Sphere_ScGeom
     O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), *shape_of]),
-                 InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), *pairs], [contact], [law]), *more]
+                 InteractionLoop([spheres(), *pairs], [contact], [law]), *more]
     O.dt = step
 
 
@@ -85,18 +87,35 @@ def biaxial():
     return {"curve": curve}
 
 
-def heap(friction):
-    """The column of lab_heap.csv between two walls, with the springs and dashpots of the cases for the mean mass."""
+def heap(friction, rolling=None):
+    """The column of lab_heap.csv between two walls, with the springs and dashpots of the cases for the mean mass; with rolling friction
+    local damping in place of dashpots. Rolling springs and limits of two discs of one radius are those of the cases: mu_r r/2."""
+    if rolling is not None:
+        mean = sum(radius for *_, radius in discs) / len(discs)
+        O.materials.append(CohFrictMat(young=1e6 / mean, poisson=0.5, frictionAngle=math.atan(friction), density=2500, isCohesive=False,
+                                       momentRotationLaw=True, alphaKr=0.25, alphaKtw=0, etaRoll=rolling / 2))
+        law = (Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(),
+               Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=True, useIncrementalForm=True))
+        return column(*law, ([Bo1_Box_Aabb()], [Ig2_Box_Sphere_ScGeom6D()]), 0.2)
     mean = sum(2500 * math.pi * radius**2 for *_, radius in discs) / len(discs)
     loss = math.log(2) / math.hypot(math.pi, math.log(2))
     # Springs and dashpots of two bodies act one behind the other: a contact has half of each.
     O.materials.append(ViscElMat(kn=2e6, ks=1e6, cn=4 * loss * math.sqrt(mean / 2 * 1e6), cs=0, frictionAngle=math.atan(friction), density=2500))
+    return column(Ip2_ViscElMat_ViscElMat_ViscElPhys(), Law2_ScGeom_ViscElPhys_Basic(),
+                  ([Bo1_Box_Aabb(), Bo1_Wall_Aabb()], [Ig2_Box_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()]), 0)
+
+
+def column(contact, law, shapes, damping):
     add_discs(0, 2500)
-    sides = [O.bodies.append(utils.wall((x, 0, 0), 0, sense=sense, material=0)) for x, sense in ((0, 1), (0.15, -1))]
+
+    def side(x, sense):
+        if damping == 0:
+            return utils.wall((x, 0, 0), 0, sense=sense, material=0)
+        return utils.box((x - 0.002 * sense, 0.5, 0), (0.002, 0.5, 0.05), fixed=True, material=0)
+
+    sides = [O.bodies.append(side(x, sense)) for x, sense in ((0, 1), (0.15, -1))]
     gate = O.bodies.append(utils.box((0.075, -0.002, 0), (0.085, 0.002, 0.05), fixed=True, material=0))
-    engines(Ip2_ViscElMat_ViscElMat_ViscElPhys(), Law2_ScGeom_ViscElPhys_Basic(),
-            ([Bo1_Box_Aabb(), Bo1_Wall_Aabb()], [Ig2_Box_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()]),
-            NewtonIntegrator(gravity=(0, -9.81, 0), damping=0))
+    engines(contact, law, shapes, NewtonIntegrator(gravity=(0, -9.81, 0), damping=damping))
     return sides, gate
 
 
@@ -117,7 +136,7 @@ def hopper():
 
 def repose():
     """As grains_repose.toml."""
-    (_, right), _ = heap(float(sys.argv[4]))
+    (_, right), _ = heap(*map(float, sys.argv[4:6]))
     O.bodies.append(utils.box((0.1555, 0.003, 0), (0.0005, 0.003, 0.05), fixed=True, material=0))
     end = O.time + 0.2
     while O.time < end:

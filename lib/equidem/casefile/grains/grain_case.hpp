@@ -15,9 +15,9 @@
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
-#include "equidem/grains/scene/shaking.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/motion/saved_state.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 

@@ -17,7 +17,7 @@
 #include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
 
 namespace equidem::casefile {

@@ -60,10 +60,10 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   const bool keeps = !system.bodies.impulses_before.empty();
   if (keeps) system.bodies.impulses_before.swap(system.bodies.impulses);
-  const bool clear = keeps || !system.bodies.cleared;
-  system.bodies.in_place = move && system.contacts.has(Between::discs) && !keeps && !system.options.verlet() &&
-                           system.shapes.parts.empty() && !system.cell.active;
-  system.bodies.cleared = system.bodies.in_place && !system.contacts.record;
+  const bool clear = keeps || !system.bodies.at_zero;
+  system.bodies.moved = move && system.contacts.has(Between::discs) && !keeps && !system.options.verlet() &&
+                        system.shapes.parts.empty() && !system.cell.active;
+  system.bodies.at_zero = system.bodies.moved && !system.contacts.record;
   if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
   const bool turning = system.contacts.has(Between::discs) && system.friction && system.options.verlet();
   system.bodies.blocks.each_in_turn(

@@ -173,7 +173,7 @@ bool may_cross(const GrainSystem& system, double reach) {
 void find_places_before(GrainSystem& system) {
   GrainBodies& bodies = system.bodies;
   bodies.motions.swap(bodies.next);
-  bodies.in_place = false;
+  bodies.moved = false;
   for (std::size_t i = 0; i < bodies.next.size(); ++i) {
     GrainMotion& before = bodies.motions[i] = bodies.next[i];
     before.position -= system.dt() * before.velocity;

@@ -12,7 +12,7 @@
 
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/respond.hpp"
 

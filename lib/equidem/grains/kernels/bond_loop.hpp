@@ -43,7 +43,7 @@ struct alignas(64) SpringGroup {
   PairLanes bending;             ///< kM dt, N m s/rad
 };
 
-/// Impulses of a step that springs cannot bear, N s; a little less than the strengths of bond_breaking.hpp, which
+/// Impulses of a step that springs cannot bear, N s; a little less than the strengths of bonds.hpp, which
 /// decides.
 struct alignas(64) StrengthGroup {
   PairLanes tension, shear;

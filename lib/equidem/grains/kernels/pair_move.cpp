@@ -65,7 +65,7 @@ void MoveBlock<turning, clears>::run(GrainSystem& system, std::size_t block) {
   const std::size_t end = system.bodies.blocks.end(block);
   const GrainBody* bodies = system.bodies.constants.data();
   const GrainMotion* motions = system.bodies.motions.data();
-  GrainMotion* next = system.bodies.in_place ? system.bodies.motions.data() : system.bodies.next.data();
+  GrainMotion* next = system.bodies.moved ? system.bodies.motions.data() : system.bodies.next.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
   PairBody* pair_bodies = system.contacts.pairs.bodies.data();
   // Compared by their bits: numbers that are not negative lie in the same order, and no number behind all of them.
@@ -110,7 +110,7 @@ auto choose_move(bool clears) {
 
 void move_pair_bodies(GrainSystem& system, std::size_t block) {
   const bool turning = system.friction || system.bonds.held > 0 || !system.shapes.parts.empty();
-  const auto move = turning ? choose_move<true>(system.bodies.cleared) : choose_move<false>(system.bodies.cleared);
+  const auto move = turning ? choose_move<true>(system.bodies.at_zero) : choose_move<false>(system.bodies.at_zero);
   move(system, block);
 }
 

@@ -17,7 +17,6 @@
 
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/effect_lanes.hpp"
 #include "equidem/grains/kernels/resist.hpp"
 
 namespace equidem::eight {

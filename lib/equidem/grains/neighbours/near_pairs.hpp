@@ -92,8 +92,8 @@ void find_near_pairs_of(GrainSystem& system, std::vector<std::size_t> blocks);
 void load_pair_bodies(GrainSystem& system);
 void load_part_bodies(GrainSystem& system);
 
-/// As move_by_euler() for a block, with the body data of the loop for the next step. GrainBodies::in_place and
-/// GrainBodies::cleared say where motions go and what is left of the impulses.
+/// As move_by_euler() for a block, with the body data of the loop for the next step. GrainBodies::moved and
+/// GrainBodies::at_zero say where motions go and what is left of the impulses.
 void move_pair_bodies(GrainSystem& system, std::size_t block);
 
 /// Update the axes to the present angles of the bodies.

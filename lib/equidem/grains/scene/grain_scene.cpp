@@ -11,7 +11,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"

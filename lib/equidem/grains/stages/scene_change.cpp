@@ -5,8 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {

@@ -12,8 +12,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/geometry/neighbours.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {

@@ -12,7 +12,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 
 namespace equidem {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/breakage/strengths.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bonds.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/stages/stage.hpp"
 
