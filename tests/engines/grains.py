@@ -148,12 +148,13 @@ def lammps_friction(program, folder):
 
 
 class Sliding:
-    """A disc at rest on the floor, pressed in by its weight, gets a speed along it and slides until it rolls."""
+    """A disc at rest on the floor, pressed in by its weight, gets a speed along it and slides until it rolls; with spin, the
+    speed of its rim, it rolls from the start."""
 
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, spin=0.0, further=""):
         pressed = 2500 * np.pi * 0.0075**2 * 9.81 / STIFFNESS
-        (folder / "discs.csv").write_text(f"x,y,radius,vx,vy,spin\n0.01,{0.0075 - pressed!r},0.0075,0.2,0,0\n")
-        case = box_case(restitution=1.0, friction=0.3, duration=0.03, time_step=2e-6)
+        (folder / "discs.csv").write_text(f"x,y,radius,vx,vy,spin\n0.01,{0.0075 - pressed!r},0.0075,0.2,0,{-spin / 0.0075!r}\n")
+        case = box_case(restitution=1.0, friction=0.3, duration=0.03, time_step=2e-6, further=further)
         self.model = Model(program, folder, case)
         table = self.model.equidem("run", "run") / "grains.csv"
         self.end = engines.columns(table, "vx_m_per_s", "spin_rad_per_s")[0]
@@ -173,6 +174,18 @@ def sliding_in(lammps, program, folder):
 
 def lammps_sliding(program, folder):
     return sliding_in(engines.lammps(), program, folder)
+
+
+def lammps_rolling(program, folder):
+    """Rolling friction slows it, by spring, dashpot and limit."""
+    disc = Sliding(program, folder, 0.2, "rolling_friction = 0.2\nrolling_ratio = 0.3\nrolling_damping = 0.3")
+    slowed = 1 - disc.end[0] / 0.2
+    if not 0.01 < slowed < 0.9:
+        raise engines.Failed(f"rolling friction took {slowed:.2g} of the speed")
+    out = disc.model.export("lammps", "--accept", "friction")
+    engines.run_lammps(engines.lammps_with_bonds(), out)
+    end = engines.dump(out / "end.dump")
+    return disc.difference(end["vx"][0], end["omegaz"][0])
 
 
 def lammps_sliding_newer(program, folder):

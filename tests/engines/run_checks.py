@@ -61,6 +61,7 @@ CHECKS = [
      grains.lammps_motion_graded),
     ("lammps_bonds", "LAMMPS", "speed and spin of a disc that slides on a floor until it rolls (newer LAMMPS)", 1e-4,
      grains.lammps_sliding_newer),
+    ("lammps_bonds", "LAMMPS", "speed and spin of a disc that rolling friction slows", 1e-4, grains.lammps_rolling),
     ("lammps_bonds", "LAMMPS", "places of 20 equal discs without damping in a box, after 0.05 s", 1e-6,
      grains.lammps_elastic),
     ("yade_grains", "YADE", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.yade_motion),

@@ -48,7 +48,7 @@ biaxial test is `triax-tutorial`, `clumps/clump-hopper-test.py` and `DEM2020Benc
 
 YADE is the better choice for tests that you program: its scripts stop, change and measure anything in Python between steps, its servo
 walls work in three dimensions, and its package brings tests of this kind in 3D. Its bonds break in tension and shear; the moments of
-CohFrictMat yield. Ours have no rolling resistance between bodies that are not bonded.
+CohFrictMat yield.
 """
 
 
@@ -239,14 +239,17 @@ def rock_pairs(lab, pairs):
 
 
 def heap_pairs(lab, pairs):
-    ours, found = [], []
-    for seed in PILE_SEEDS:
-        settings = ensembles.sample(lab, f"pile{seed}_sample", samples.heap(lab.equidem, seed))
-        out, result, seconds = lab.run("repose", *settings)
-        ours.append(readings.slope(out)["angle"])
-        theirs = peer("repose", lab.folder / f"pile{seed}_sample.csv", result["time_step"], 0.5)
-        found.append(readings.slope_of(*numpy.array(theirs["discs"]).T)["angle"])
-    pairs.add("repose, friction 0.5, three samples", "slope", several.both(ours) + "°", seconds, result["steps"], theirs, several.both(found) + "°")
+    for rolling in (None, 0.4):
+        ours, found = [], []
+        for seed in PILE_SEEDS:
+            settings = ensembles.sample(lab, f"pile{seed}_sample", samples.heap(lab.equidem, seed))
+            more = [f"collisions.rolling_friction={rolling}", "collisions.rolling_damping=0.3"] if rolling else []
+            out, result, seconds = lab.run("repose", *settings, *more)
+            ours.append(readings.slope(out)["angle"])
+            theirs = peer("repose", lab.folder / f"pile{seed}_sample.csv", result["time_step"], 0.5, *([rolling] if rolling else []))
+            found.append(readings.slope_of(*numpy.array(theirs["discs"]).T)["angle"])
+        name = f"repose, friction 0.5, {f'rolling friction {rolling}, local damping in YADE, ' if rolling else ''}three samples"
+        pairs.add(name, "slope", several.both(ours) + "°", seconds, result["steps"], theirs, several.both(found) + "°")
     out, result, seconds = lab.run("hopper")
     theirs = peer("hopper", "lab_heap.csv", result["time_step"])
     left = [(when, out_of) for when, out_of in theirs["out"] if 100 < out_of < 900]
