@@ -254,6 +254,16 @@ class Interrupted(ProgramTest):
         self.assertIn(f"{done} of 200 frequencies are done", result["failure"])
         self.assertEqual(len((out / "viscoelastic.csv").read_text().splitlines()), done + 1)
 
+    def test_load_cases_solved_until_an_interruption_are_delivered(self):
+        case = self.folder / "loads.toml"
+        case.write_text((CASES / "cantilever.toml").read_text() + "".join(
+            f'[[load]]\ncase = "pull {k}"\ngroup = "right"\nkind = "traction"\nforce = [0.0, {k + 1}.0]\n' for k in range(200)))
+        result, report, out = self.part_of("solve", case, "--set", "assembly.columns=200", "--set", "assembly.rows=60")
+        done = len(result["load_cases"])
+        self.assertIn(f"{done} of 202 load cases are done", result["failure"])
+        self.assertLess(done, 202)
+        self.assertIn("weight", report)
+
     def test_the_stability_found_until_an_interruption_is_delivered(self):
         result, report, out = self.part_of("stability", CASES / "random_cell.toml", "--set", "assembly.discs=20000",
                                            "--set", "assembly.density=2600.0")

@@ -247,7 +247,12 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
     for (const NamedLoads& loads : problem.load_cases) {
       failure = failure_of([&] { results.push_back(solve_case(problem, solver, loads)); });
       if (failure && results.empty()) throw Error(*failure);
-      if (failure) break;
+      if (!failure) continue;
+      const std::string why = failure->why().empty() ? "" : failure->why() + "; ";
+      failure.emplace(failure->kind(), failure->problem(),
+                      fmt::format("{}{} of {} load cases are done", why, results.size(), problem.load_cases.size()),
+                      failure->remedy(), failure->where());
+      break;
     }
     effects = solver.effects();
   }
