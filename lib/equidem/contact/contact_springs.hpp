@@ -180,6 +180,17 @@ ContactResponse<Number> contact_response(const ContactSprings& springs, std::siz
   return response;
 }
 
+inline ContactStiffness contact_stiffness(const ContactSprings& springs, std::size_t contact, const ContactFrame& frame,
+                                          double rotation_scale) {
+  const SpringConstants k = springs[contact];
+  return {.ends = end_gradients(frame, rotation_scale),
+          .kN = k.kN,
+          .kT = k.kT,
+          .kM = springs.bends() ? springs.bending(contact) / (rotation_scale * rotation_scale) : 0,
+          .prestress = springs.prestress(contact),
+          .rotation_scale = rotation_scale};
+}
+
 /// One of the two, or none: contacts carry no moments.
 struct BendingOptions {
   std::optional<double> kM = {};          ///< >= 0, N m/rad per metre of depth, of every contact
