@@ -120,7 +120,8 @@ void multiply_row(const StiffnessMatrix& matrix, const Assembly& assembly, const
 }  // namespace
 
 double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns) {
-  const auto found = std::find(unknowns.held.begin(), unknowns.held.end(), 1);
+  const auto found = std::find_if(unknowns.held.begin(), unknowns.held.end(),
+                                  [](std::uint8_t held) { return held != DegreesOfFreedom::free; });
   if (found == unknowns.held.end()) return 1;
   const auto component = static_cast<std::size_t>(found - unknowns.held.begin());
   const auto block = static_cast<std::size_t>(matrix.block);
