@@ -24,13 +24,11 @@ constexpr double negligible = 1e-12;
 }  // namespace
 
 Effects effects_of(const Ranks& ranks, const Part& part, const ContactSprings& springs, Rotation rotation) {
-  if (ranks.any(springs.bends())) {
-    bad_input("the contacts have bending springs", "the matrix of PETSc is that of contacts without moments",
-              "Take the factorizations of the serial library, or leave the bending springs out");
-  }
   const bool tangential = ranks.any(springs.any_tangential());
   const bool off_lines = ranks.any(!on_lines_of_centres(part.assembly));
-  return derive_effects(ContactSprings(SpringConstants{1, tangential ? 1.0 : 0.0}), rotation, off_lines);
+  ContactSprings alike(SpringConstants{1, tangential ? 1.0 : 0.0});
+  if (ranks.any(springs.bends())) alike = alike.with_bending({1});
+  return derive_effects(alike, rotation, off_lines);
 }
 
 Network::Network(const Ranks& all, const Part& own, const Whole& sums, const ContactSprings& of_part,
@@ -114,9 +112,9 @@ void Network::residual(const PreciseMotion& motion, const std::optional<Tensor2>
   }
 }
 
-std::vector<double> Network::internal(std::span<const ContactForce> forces) const {
+std::vector<double> Network::internal(const PreciseMotion& motion) const {
   std::vector<double> result(size(), 0.0);
-  internal_force(assembly, graph, unknowns, forces, result);
+  internal_force(local(), motion, {}, result);
   halo.add(result, unknowns.per_disc);
   return result;
 }
@@ -154,12 +152,14 @@ void check_held(const Network& network) {
   if (!x) refuse_free(true, "translation along x", "Hold a disc in x");
   if (!y) refuse_free(true, "translation along y", "Hold a disc in y");
   if (turns) refuse_free(true, "rotation", "Hold one more disc, along a line that does not pass through that point");
-  const bool rolls = assembly.kind == "square" && b == 3 && gram[5] == 0;
+  const bool rolls = assembly.kind == "square" && b == 3 && gram[5] == 0 && !network.effects.bending;
   if (rolls) {
-    bad_input(fmt::format("{} around disc 0 have a zero-energy mode in which they counter-rotate like gears",
-                          counted(network.whole.discs, "disc")),
-              "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
-              "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
+    bad_input(
+        fmt::format("{} around disc 0 have a zero-energy mode in which they counter-rotate like gears",
+                    counted(network.whole.discs, "disc")),
+        "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
+        "Hold the rotation of one of them, restrain rotation, give the contacts bending springs, or add a contact that "
+        "closes an odd ring");
   }
 }
 

@@ -17,7 +17,6 @@
 namespace equidem::petsc {
 
 /// The effects of the whole scene, the same on all ranks.
-/// \throws Error (bad_input) where contacts have bending springs
 Effects effects_of(const Ranks& ranks, const Part& part, const ContactSprings& springs, Rotation rotation);
 
 /// Refers to what it is made of, which must outlive it and not move.
@@ -39,8 +38,8 @@ struct Network {
   /// \param gradient of the mean displacement; none: 0
   void residual(const PreciseMotion& motion, const std::optional<Tensor2>& gradient, std::span<const double> f,
                 std::span<double> result) const;
-  /// Forces of contacts on owned discs, held or not, negative: f_int.
-  [[nodiscard]] std::vector<double> internal(std::span<const ContactForce> forces) const;
+  /// f_int on owned discs, held or not: the negative of what contacts exert.
+  [[nodiscard]] std::vector<double> internal(const PreciseMotion& motion) const;
   /// 2-norm over the owned discs of all ranks.
   [[nodiscard]] double norm(std::span<const double> x) const;
 

@@ -366,8 +366,12 @@ ScatteredPart scattered_part(const Ranks& ranks, const Assembly* given, const Co
   }
   assembly.groups = own_groups(groups, part);
   std::vector<SpringConstants> of_whole;
-  for (std::size_t c = 0; c < whole.contacts.size(); ++c) of_whole.push_back((*springs)[c]);
-  result.springs = ContactSprings(of_contacts(of_whole));
+  std::vector<double> bending;
+  for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
+    of_whole.push_back((*springs)[c]);
+    if (springs->bends()) bending.push_back(springs->bending(c));
+  }
+  result.springs = ContactSprings(of_contacts(of_whole)).with_bending(of_contacts(bending));
   return result;
 }
 

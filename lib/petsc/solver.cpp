@@ -72,19 +72,22 @@ class Coordinates {
     auto next = static_cast<std::size_t>(owned);
     for (std::size_t c = 0; c < network_.assembly.contacts.size(); ++c) {
       const Contact& contact = network_.assembly.contacts[c];
-      const DeformationGradient g =
-          deformation_gradient(frame_of(network_.assembly, c), network_.unknowns.rotation_scale);
-      const std::array normal{&g.normal_i, &g.normal_j}, tangential{&g.tangential_i, &g.tangential_j};
-      // Ends 0: at disc i, 1: at j.
-      const auto add = [&](std::size_t p, std::size_t q, std::size_t block) {
-        add_linear_spring_tangent<B>(network_.springs[c], *normal[p], *normal[q], *tangential[p], *tangential[q],
-                                     &values[block * entries]);
+      const ContactStiffness k =
+          contact_stiffness(network_.springs, c, frame_of(network_.assembly, c), network_.unknowns.rotation_scale);
+      const auto add = [&](const EndGradient& p, const EndGradient& q, std::size_t block) {
+        k.add<B>(p, q, &values[block * entries]);
       };
       const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
-      add(0, 0, i);
-      add(0, 1, i == j ? i : next++);
-      add(1, 0, i == j ? i : next++);
-      add(1, 1, i != j && contact.j >= owned ? next++ : j);
+      const auto& ends = k.ends;
+      if (i == j) {
+        const EndGradient both = ends.as_one(1);
+        add(both, both, i);
+        continue;
+      }
+      add(ends.i, ends.i, i);
+      add(ends.i, ends.j, next++);
+      add(ends.j, ends.i, next++);
+      add(ends.j, ends.j, contact.j >= owned ? next++ : j);
     }
     return values;
   }

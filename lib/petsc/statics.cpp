@@ -48,7 +48,8 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
   state.motions = disc_motions(unknowns, refined.motion.high);
   state.contact_forces.resize(assembly.contacts.size());
   contact_forces_of(assembly, network.springs, unknowns, refined.motion, state.contact_forces);
-  const std::vector<double> internal = network.internal(state.contact_forces);
+  if (network.effects.bending) state.bending_moments = bending_moments_of(network.local(), refined.motion);
+  const std::vector<double> internal = network.internal(refined.motion);
   double sums[7] = {};  // energy, moments, stress and its scale
   for (std::size_t d = 0; d < static_cast<std::size_t>(network.part.owned); ++d) {
     const auto held = [&](std::size_t k) { return unknowns.held[d * b + k] != 0; };
@@ -63,6 +64,9 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
     const ContactForce& force = state.contact_forces[c];
     const SpringConstants springs = network.springs[c];
     sums[0] += linear_spring_energy_of(springs, force);
+    const double kM = network.springs.bending(c);
+    if (!state.bending_moments.empty() && kM > 0)
+      sums[0] += 0.5 * state.bending_moments[c] * state.bending_moments[c] / kM;
     if (network.effects.restrained) sums[1] -= moment_on_i(frame, force) + moment_on_j(frame, force);
     const Tensor2 work = force_by_branch(frame, force);
     sums[2] += work.xx, sums[3] += work.xy, sums[4] += work.yx, sums[5] += work.yy, sums[6] += frobenius_norm(work);
@@ -199,27 +203,34 @@ namespace {
 /// Sums over the contacts of all ranks: energies of pairs of strains, and stresses of each case times the area.
 struct Sums {
   PairEnergies energies;
+  Matrix3 bending{};
   std::vector<Tensor2> stresses;
 };
 
 Sums sum_up(const Network& network, std::span<const Refined> cases) {
   const Assembly& assembly = network.assembly;
   const SpringNetwork local = network.local();
-  auto total = contact_sums<pair_sums + 4 * strain_cases>(assembly.contacts.size(), [&](std::size_t c, auto& sums) {
+  constexpr std::size_t first_stress = pair_sums + pair_sums / 2;  // after the energies of the three springs
+  auto total = contact_sums<first_stress + 4 * strain_cases>(assembly.contacts.size(), [&](std::size_t c, auto& sums) {
     const ContactFrame frame = frame_of(assembly, c);
     std::array<ContactDeformation, strain_cases> deformations;
+    std::array<double, strain_cases> turns{};
     for (std::size_t k = 0; k < cases.size(); ++k) {
-      deformations[k] = deformation_of(local, cases[k].motion, unit_gradients[k], c);
+      const ContactMotion motion = motion_of(local, cases[k].motion, unit_gradients[k], c);
+      deformations[k] = motion.deformation;
+      turns[k] = motion.theta_j - motion.theta_i;
       const Tensor2 work = force_by_branch(frame, linear_spring_force(network.springs[c], deformations[k]));
-      double* const stress = &sums[pair_sums + 4 * k];
+      double* const stress = &sums[first_stress + 4 * k];
       stress[0] += work.xx, stress[1] += work.xy, stress[2] += work.yx, stress[3] += work.yy;
     }
     add_pair_energies(network.springs[c], deformations.data(), sums.data());
+    const double kM = network.springs.bending(c);
+    add_triangle(sums.data() + pair_sums, [&](std::size_t a, std::size_t b) { return kM * turns[a] * turns[b]; });
   });
   network.ranks.sum(total);
-  Sums sums{.energies = pair_energies(total.data()), .stresses = {}};
+  Sums sums{.energies = pair_energies(total.data()), .bending = symmetric(total.data() + pair_sums), .stresses = {}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    const double* stress = &total[pair_sums + 4 * k];
+    const double* stress = &total[first_stress + 4 * k];
     sums.stresses.push_back({stress[0], stress[1], stress[2], stress[3]});
   }
   return sums;
@@ -237,7 +248,7 @@ bool is_even_square(const Part& part) {
 
 std::vector<std::int64_t> free_components(const Part& part, const Effects& effects) {
   std::vector<std::int64_t> components{0, 1};
-  if (effects.rotation && is_even_square(part)) components.push_back(2);
+  if (effects.rotation && !effects.bending && is_even_square(part)) components.push_back(2);
   return components;
 }
 
@@ -266,6 +277,10 @@ EffectiveStiffness cell_stiffness(const Network& network, PetscSolver& solver) {
   result.normal_part = (1 / result.area) * sums.energies.normal;
   result.tangential_part = (1 / result.area) * sums.energies.tangential;
   result.stiffness = result.normal_part + result.tangential_part;
+  if (result.effects.bending) {
+    result.bending_part = (1 / result.area) * sums.bending;
+    result.stiffness = result.stiffness + result.bending_part;
+  }
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   result.error_bound = (worst * worst + rounding) * largest_entry(result.stiffness);
   result.hill_mandel = power_difference(sums.stresses, result.stiffness);

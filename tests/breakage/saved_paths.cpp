@@ -47,6 +47,28 @@ bool step(Unbonded& path, std::int64_t& left) {
 
 }  // namespace
 
+TEST_CASE("numbers_of_a_state_with_other_members_are_refused") {
+  double load = 1.5;
+  std::int64_t events = 3;
+  std::vector<std::int64_t> contacts{4, 5};
+  PathNumbers numbers;
+  numbers.pass(load, events, contacts);
+  const auto restored = [&](auto&... members) {
+    PathNumbers kept(numbers.numbers());
+    kept.pass(members...);
+    kept.check_end();
+  };
+  restored(load, events, contacts);
+  CHECK(load == 1.5);
+  CHECK(events == 3);
+  double other = 0;
+  std::vector<double> lengths;
+  CHECK_THROWS_AS(restored(events, load, contacts), Error);
+  CHECK_THROWS_AS(restored(load, events, lengths), Error);
+  CHECK_THROWS_AS(restored(load, events), Error);
+  CHECK_THROWS_AS(restored(load, events, contacts, other), Error);
+}
+
 TEST_CASE("a_path_that_is_restored_goes_on_with_the_same_bits") {
   constexpr std::int64_t most = 150;
   std::int64_t restored = 0, breaks = 0, slips = 0, ended = 0;

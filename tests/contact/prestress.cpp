@@ -45,16 +45,13 @@ Matrix6 minus_derivative(const Forces& forces, Number width) {
 
 /// The tangent that statics assembles, with rotations in rad (a = 1).
 Matrix6 tangent(const ContactFrame& frame, const SpringConstants& k, const ContactPrestress& prestress) {
-  const DeformationGradient g = deformation_gradient(frame, 1);
+  const ContactStiffness stiffness{.ends = end_gradients(frame, 1), .kN = k.kN, .kT = k.kT, .prestress = &prestress};
+  const auto end = [&](int p) -> const EndGradient& { return p == 0 ? stiffness.ends.i : stiffness.ends.j; };
   Matrix6 result{};
   for (int p = 0; p < 2; ++p) {
     for (int q = 0; q < 2; ++q) {
       std::array<double, 9> block{};
-      const auto &n_p = p == 0 ? g.normal_i : g.normal_j, &n_q = q == 0 ? g.normal_i : g.normal_j;
-      const auto &t_p = p == 0 ? g.tangential_i : g.tangential_j, &t_q = q == 0 ? g.tangential_i : g.tangential_j;
-      add_linear_spring_tangent<3>(k, n_p, n_q, t_p, t_q, block.data());
-      const auto turns = [](int end) { return std::array{end == 0 ? 1.0 : 0.0, end == 1 ? 1.0 : 0.0}; };
-      add_prestress_tangent<3>(prestress, n_p, n_q, t_p, t_q, turns(p), turns(q), block.data());
+      stiffness.add<3>(end(p), end(q), block.data());
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t c = 0; c < 3; ++c) result[3 * p + r][3 * q + c] = block[3 * r + c];
     }

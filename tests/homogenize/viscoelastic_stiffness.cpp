@@ -75,7 +75,7 @@ DenseStiffness dense_stiffness(const Assembly& assembly, const ContactSprings& s
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
     const ContactFrame frame = frame_of(assembly, c);
-    const DeformationGradient g = deformation_gradient(frame, scale);
+    const EndGradients g = end_gradients(frame, scale);
     const auto add = [&](Amplitude spring, const std::array<double, 3>& of_i, const std::array<double, 3>& of_j,
                          Vec2 direction) {
       Eigen::VectorXcd row = Eigen::VectorXcd::Zero(unknowns);
@@ -89,8 +89,8 @@ DenseStiffness dense_stiffness(const Assembly& assembly, const ContactSprings& s
       f += spring * row * affine;
       stiffness += spring * affine.transpose() * affine;
     };
-    add(springs[c].kN * law.normal.factor(frequency), g.normal_i, g.normal_j, frame.normal);
-    add(springs[c].kT * law.tangential.factor(frequency), g.tangential_i, g.tangential_j, frame.tangent());
+    add(springs[c].kN * law.normal.factor(frequency), g.i.normal, g.j.normal, frame.normal);
+    add(springs[c].kT * law.tangential.factor(frequency), g.i.tangential, g.j.tangential, frame.tangent());
   }
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     for (const Eigen::Index e : {3 * static_cast<Eigen::Index>(d), 3 * static_cast<Eigen::Index>(d) + 1}) {

@@ -198,3 +198,15 @@ TEST_CASE("cholesky_back_ends_agree_on_the_smallest_pivot_with_one_order") {
   CHECK(supernodal.smallest_pivot == Approx(multifrontal.smallest_pivot).epsilon(0.5));
   CHECK(supernodal.nonzeros <= multifrontal.nonzeros);  // ours keeps held components
 }
+
+TEST_CASE("held_components_have_one_stiffness_whatever_holds_them") {
+  for (const std::uint8_t why : {DegreesOfFreedom::supported, DegreesOfFreedom::without_stiffness}) {
+    System system("one rotation is held", square_lattice({.columns = 3, .rows = 3}), usual, 3,
+                  [](std::int32_t, int) { return false; });
+    system.unknowns.held[3 * 4 + 2] = why;
+    system.matrix = assemble_stiffness(system.assembly, system.graph, system.springs, system.unknowns);
+    CAPTURE(static_cast<int>(why));
+    CHECK(held_stiffness(system.matrix, system.unknowns) == system.springs.largest());
+    CHECK(held_stiffness(system.matrix, system.unknowns) == system.matrix.diagonal_block(4)[8]);
+  }
+}

@@ -74,7 +74,8 @@ def blocks(folder):
     """Name -> (case, arguments), with assemblies of every kind, supports, loads, imposed motions, restrained rotation."""
     for name, kind, kT, rotation in (("hexagonal", "hexagonal", 0.5e9, "free"), ("square", "square", 0.3e9, "free"),
                                      ("restrained", "hexagonal", 0.5e9, "restrained"),
-                                     ("without kT", "hexagonal", 0.0, "free")):
+                                     ("without kT", "hexagonal", 0.0, "free"),
+                                     ("bonds", "square", "0.3e9\nbond_width = 0.8", "free")):
         path = folder / f"{name.replace(' ', '_')}.toml"
         path.write_text(BLOCK.format(kind=kind, kT=kT, rotation=rotation), encoding="utf-8")
         yield name, path, ()
@@ -133,6 +134,13 @@ def cells(folder):
     yield "facets", CASES / "random_cell.toml", ("--set", "springs.weighting=voronoi")
     yield "packing", CASES / "packed_rock.toml", ("--set", "packing.grains=300", "--set", "springs.kN=1e9", "--set",
                                                   "springs.kT=0.5e9", "--set", "material=none")
+    yield "bonds of points", CASES / "random_cell.toml", ("--set", "springs.bond_width=0.9")
+    yield "bonds of a square lattice", CASES / "hexagonal_cell.toml", (
+        "--set", "assembly.kind=square", "--set", "assembly.columns=12", "--set", "assembly.rows=10", "--set",
+        "springs.bond_width=0.7")
+    yield "bonds of a packing", CASES / "packed_rock.toml", (
+        "--set", "packing.grains=300", "--set", "springs.kN=1e9", "--set", "springs.kT=0.5e9", "--set",
+        "springs.bond_width=0.5", "--set", "material=none")
 
 
 def the_moduli_are_those_of_the_serial_program_on_every_number_of_ranks(folder):

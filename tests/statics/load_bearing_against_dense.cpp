@@ -56,13 +56,13 @@ struct Compatibility {
     }
     for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
       const Contact& c = assembly.contacts[k];
-      const DeformationGradient g = deformation_gradient(frame_of(assembly, k), 1);
+      const EndGradients g = end_gradients(frame_of(assembly, k), 1);
       Vector normal(free.size(), 0.0), tangential(free.size(), 0.0);
       for (std::size_t m = 0; m < 3; ++m) {
-        normal[3 * c.i + m] += g.normal_i[m];
-        normal[3 * c.j + m] += g.normal_j[m];
-        tangential[3 * c.i + m] += g.tangential_i[m];
-        tangential[3 * c.j + m] += g.tangential_j[m];
+        normal[3 * c.i + m] += g.i.normal[m];
+        normal[3 * c.j + m] += g.j.normal[m];
+        tangential[3 * c.i + m] += g.i.tangential[m];
+        tangential[3 * c.j + m] += g.j.tangential[m];
       }
       rows.push_back(std::move(normal));
       rows.push_back(std::move(tangential));

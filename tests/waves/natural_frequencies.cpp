@@ -7,6 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/waves/stability.hpp"
 #include "equidem/waves/vibration.hpp"
 
 #include "support/assemblies.hpp"
@@ -203,4 +208,59 @@ TEST_CASE("the_bits_of_natural_frequencies_do_not_depend_on_threads") {
     CHECK(found.squared.size() == 4);
     CHECK(found.squared == first);
   }
+}
+
+TEST_CASE("frequencies_about_a_state_of_rest_under_forces_are_those_of_a_dense_matrix") {
+  Assembly block = delaunay_assembly({.discs = 40, .disorder = 0.3, .seed = 5});
+  Random random(2);
+  for (const Contact& contact : block.contacts) {
+    const double size = 0.05 * norm(block.branch(contact));  // kN l = l
+    block.contact_normal_force.push_back(size * random.uniform(-1, 1));
+    block.contact_tangential_force.push_back(size * random.uniform(-0.5, 0.5));
+  }
+  const ContactSprings bare({1, 0.4}), springs = bare.with_prestress(prestress_of(block));
+  const std::vector<Support> held{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
+  const StabilityOptions options{.density = 1.2};
+  const Stability s = analyze_stability(block, springs, held, options),
+                  without = analyze_stability(block, bare, held, options);
+  REQUIRE(s.status() == "stable");
+  REQUIRE(s.natural.squared.size() == 4);
+  // Second derivatives of the energy, by energies of sums of unit motions.
+  const DegreesOfFreedom unknowns = number_unknowns(block, springs, s.effects, held);
+  const std::vector<Inertia> inertia = inertia_of(block, options.density, options.body);
+  const double a = unknowns.rotation_scale;
+  const auto energy = [&](std::size_t p, std::size_t q) {
+    std::vector<double> x(unknowns.held.size(), 0.0);
+    x[p] += 1;
+    if (q < x.size()) x[q] += 1;
+    return elastic_energy(block, springs, disc_motions(unknowns, x));
+  };
+  DenseMatrix k(unknowns.held.size());
+  std::vector<double> alone, root;
+  for (std::size_t c = 0; c < k.size; ++c) {
+    alone.push_back(energy(c, k.size));
+    root.push_back(std::sqrt(c % 3 == 2 ? inertia[c / 3].moment / (a * a) : inertia[c / 3].mass));
+  }
+  const double far = 10 * element_bound(block, springs, inertia, true);
+  for (std::size_t p = 0; p < k.size; ++p) {
+    for (std::size_t q = 0; q < k.size; ++q) {
+      k(p, q) = (energy(p, q) - alone[p] - alone[q]) / (root[p] * root[q]);
+      if (unknowns.held[p] != 0 || unknowns.held[q] != 0) k(p, q) = p == q ? far : 0;
+    }
+  }
+  check_against(tridiagonalize(std::move(k)), s.natural);
+  CHECK(std::abs(s.natural.squared[0] / without.natural.squared[0] - 1) > 1e-3);
+}
+
+TEST_CASE("a_state_of_rest_that_its_forces_make_unstable_has_no_natural_frequencies") {
+  Assembly row = square_lattice({.columns = 12, .rows = 1, .radius = 0.5});
+  row.groups["ends"].discs = {0, 11};
+  row.contact_normal_force.assign(row.contacts.size(), -0.5);
+  row.contact_tangential_force.assign(row.contacts.size(), 0.0);
+  const ContactSprings springs = ContactSprings({1, 0.01}).with_prestress(prestress_of(row));
+  const std::vector<Support> held{{.group = "ends", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
+  const Stability s = analyze_stability(row, springs, held);
+  CHECK(s.status() == "unstable");
+  CHECK(s.natural.squared.empty());
+  CHECK(s.natural.why_none == "springs and forces at rest together are not stable");
 }

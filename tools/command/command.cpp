@@ -178,7 +178,7 @@ Case read_case(const CommonOptions& options) {
 
 void check_taken(const Case& resolved, std::string_view verb) {
   constexpr std::string_view of_prestress[] = {"solve", "homogenize", "stability", "sweep"},
-                             of_bending[] = {"calibrate", "run", "export"};
+                             of_bending[] = {"calibrate", "run", "export", "equidem-mpi"};
   if (std::ranges::find(of_prestress, verb) != std::end(of_prestress)) return;
   if (resolved.prestress == PrestressChoice::on)
     bad_input_at(resolved.where("effects.prestress"),
@@ -190,7 +190,7 @@ void check_taken(const Case& resolved, std::string_view verb) {
   bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
                fmt::format("{} takes no bending springs, and the case gives some", verb),
                "its answer would be that of contacts without moments",
-               "Remove it; solve, homogenize, calibrate, stability, run and export take it");
+               "Remove it; solve, homogenize, calibrate, stability, run, export and equidem-mpi take it");
 }
 
 void OutputPlan::expect(const std::string& name) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The state of a path as a list of numbers, bit for bit: one description of it saves and restores.
+/// The state of a path as a list of numbers, bit for bit: one description of it saves and restores. The last number
+/// follows from the kinds of all others in turn: numbers of a state with other members are refused.
 #pragma once
 
 #include <concepts>
@@ -26,10 +27,15 @@ class PathNumbers {
   explicit PathNumbers(std::vector<double> numbers) : numbers_(std::move(numbers)), restores_(true) {}
 
   [[nodiscard]] bool restores() const { return restores_; }
-  [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
-  /// \throws Error (bad_input) where numbers are left over
+  /// What was saved.
+  [[nodiscard]] std::vector<double> numbers() const {
+    std::vector<double> all = numbers_;
+    all.push_back(kinds());
+    return all;
+  }
+  /// \throws Error (bad_input) where numbers are left over, or were saved of other kinds
   void check_end() const {
-    if (restores_ && next_ != numbers_.size()) refuse();
+    if (restores_ && (next_ + 1 != numbers_.size() || numbers_.back() != kinds())) refuse();
   }
 
   /// Saves these, or restores them.
@@ -40,7 +46,7 @@ class PathNumbers {
 
  private:
   [[noreturn]] static void refuse() {
-    bad_input("the state of the path cannot be restored", "it has another number of contacts or events",
+    bad_input("the state of the path cannot be restored", "it has other contacts, events or members",
               "Begin anew, without --resume and with --overwrite");
   }
   double& next() {
@@ -51,6 +57,7 @@ class PathNumbers {
 
   template <typename T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void one(T& value) {
+    mark(std::is_floating_point_v<T> ? 1 : std::is_enum_v<T> ? 2 : 3);
     double& number = next();
     if (restores_) {
       value = static_cast<T>(number);
@@ -97,8 +104,12 @@ class PathNumbers {
     text.assign(letters.begin(), letters.end());
   }
 
+  void mark(std::uint64_t kind) { kinds_ = (kinds_ ^ kind) * 0x100000001b3; }  // FNV-1a
+  [[nodiscard]] double kinds() const { return static_cast<double>(kinds_ >> 11); }
+
   std::vector<double> numbers_;
   std::size_t next_ = 0;
+  std::uint64_t kinds_ = 0xcbf29ce484222325;
   bool restores_ = false;
 };
 

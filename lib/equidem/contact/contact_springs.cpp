@@ -227,16 +227,12 @@ double smaller_radius(const Assembly& assembly, std::size_t contact) {
   return std::min(assembly.radii[c.i], assembly.radii[c.j]);
 }
 
-void check(const ContactSprings& springs, const BendingOptions& options) {
+void check(const BendingOptions& options) {
   if (options.kM && options.bond_width) {
     bad_input("kM and bond_width are both given", "each says how stiff contacts are in bending", "Remove one of them");
   }
   check_range(Range::not_negative(), options.kM.value_or(0), "bending spring kM of the contacts", "N");
   check_range(Range::not_negative(), options.bond_width.value_or(0), "bond_width of the contacts");
-  if (!springs.any_negative()) return;
-  bad_input("some kT is negative, and contacts resist bending",
-            "with kT < 0 statics eliminates rotations, which resist nothing else, before it asks for stability",
-            "Take kT >= 0, or no bending springs");
 }
 
 }  // namespace
@@ -247,7 +243,7 @@ double bond_width(const Assembly& assembly, std::size_t contact, const BendingOp
 
 ContactSprings bending_springs(const Assembly& assembly, const ContactSprings& springs, const BendingOptions& options) {
   if (!options.given()) return springs;
-  check(springs, options);
+  check(options);
   std::vector<double> bending(assembly.contacts.size());
   constexpr double most = 1e10;  // leaves six digits of the normal stiffness
   bool differ = false;

@@ -180,6 +180,17 @@ ContactResponse<Number> contact_response(const ContactSprings& springs, std::siz
   return response;
 }
 
+inline ContactStiffness contact_stiffness(const ContactSprings& springs, std::size_t contact, const ContactFrame& frame,
+                                          double rotation_scale) {
+  const SpringConstants k = springs[contact];
+  return {.ends = end_gradients(frame, rotation_scale),
+          .kN = k.kN,
+          .kT = k.kT,
+          .kM = springs.bends() ? springs.bending(contact) / (rotation_scale * rotation_scale) : 0,
+          .prestress = springs.prestress(contact),
+          .rotation_scale = rotation_scale};
+}
+
 /// One of the two, or none: contacts carry no moments.
 struct BendingOptions {
   std::optional<double> kM = {};          ///< >= 0, N m/rad per metre of depth, of every contact
@@ -194,8 +205,8 @@ double bond_width(const Assembly& assembly, std::size_t contact, const BendingOp
 /// The springs with the bending springs of the bonds: kM as given, or that of a parallel bond, an elastic layer whose
 /// stiffness kN/w per length is spread evenly over its width w: kM = (kN/w) w³/12 = kN w²/12, kN that of the contact
 /// (Potyondy & Cundall 2004, Int. J. Rock Mech. Min. Sci. 41, 1329: a rectangle in two dimensions).
-/// \throws Error (bad_input) where both are given, a number is negative or not finite, some kT < 0, or kM is more than
-///         1e10 times kN r², r the radius of the smaller disc
+/// \throws Error (bad_input) where both are given, a number is negative or not finite, or kM is more than 1e10 times
+///         kN r², r the radius of the smaller disc
 ContactSprings bending_springs(const Assembly& assembly, const ContactSprings& springs, const BendingOptions& options);
 
 /// A relation between springs and moduli (Abe 1996) with the measures that it needs.

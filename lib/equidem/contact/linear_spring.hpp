@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/prestress/prestress.hpp"
@@ -46,58 +47,89 @@ inline double linear_spring_energy_of(const SpringConstants& k, const ContactFor
   return 0.5 * (f.normal * f.normal / k.kN + tangential);
 }
 
-/// Derivatives of the deformation by the motion (u_x, u_y, a theta) of one of the two discs; the tangent is made of
-/// them: K_pq = kN n_p n_q^T + kT t_p t_q^T for p, q in {i, j}.
-struct DeformationGradient {
-  std::array<double, 3> normal_i, normal_j;          ///< d dn / d(u_x, u_y, a theta)
-  std::array<double, 3> tangential_i, tangential_j;  ///< d ds / d(u_x, u_y, a theta)
+/// How a contact deforms with the motion (u_x, u_y, a theta) of the body at one of its ends.
+struct EndGradient {
+  std::array<double, 3> normal{}, tangential{};  ///< derivatives of stretch and slip
+  std::array<double, 2> turns{};                 ///< derivatives of a theta_i and a theta_j by a theta
+
+  /// Derivative of a (theta_j - theta_i) by a theta.
+  [[nodiscard]] double bending() const { return turns[1] - turns[0]; }
+};
+
+struct EndGradients {
+  EndGradient i, j;
+
+  /// Both ends as one, where the contact joins a body to an image of itself that moves as `sign` times the body.
+  [[nodiscard]] EndGradient as_one(double sign) const {
+    EndGradient both;
+    for (std::size_t k = 0; k < 3; ++k) {
+      both.normal[k] = i.normal[k] + sign * j.normal[k];
+      both.tangential[k] = i.tangential[k] + sign * j.tangential[k];
+    }
+    both.turns = {1, sign};
+    return both;
+  }
 };
 
 /// \param rotation_scale the length a (m) by which rotations are scaled
-inline DeformationGradient deformation_gradient(const ContactFrame& frame, double rotation_scale) {
+inline EndGradients end_gradients(const ContactFrame& frame, double rotation_scale) {
   const Vec2 n = frame.normal;
   const Vec2 s = frame.tangent();
-  return {{-n.x, -n.y, frame.offset_i / rotation_scale},
-          {n.x, n.y, frame.offset_j / rotation_scale},
-          {-s.x, -s.y, -frame.lever_i / rotation_scale},
-          {s.x, s.y, -frame.lever_j / rotation_scale}};
+  return {{{-n.x, -n.y, frame.offset_i / rotation_scale}, {-s.x, -s.y, -frame.lever_i / rotation_scale}, {1, 0}},
+          {{n.x, n.y, frame.offset_j / rotation_scale}, {s.x, s.y, -frame.lever_j / rotation_scale}, {0, 1}}};
 }
 
-/// block += kN g_p g_q^T + kT h_p h_q^T, row-major B x B: the tangent between the ends p and q of a contact, from the
-/// derivatives g of stretch and h of slip by the motion of each end. B = 2 leaves rotations out.
-template <int B>
-void add_linear_spring_tangent(const SpringConstants& k, const std::array<double, 3>& normal_p,
-                               const std::array<double, 3>& normal_q, const std::array<double, 3>& tangential_p,
-                               const std::array<double, 3>& tangential_q, double* block) {
-  for (int r = 0; r < B; ++r) {
-    for (int c = 0; c < B; ++c) {
-      block[r * B + c] += k.kN * normal_p[r] * normal_q[c] + k.kT * tangential_p[r] * tangential_q[c];
+/// The tangent of a contact, by blocks between the motions of its ends:
+///
+///   K_pq = kN n_p n_q^T + kT t_p t_q^T + kM b_p b_q^T + prestress,   p, q in {i, j}
+///
+/// with the derivatives n of stretch, t of slip and b of relative rotation. A contact that slips has in place of kT t_p
+/// t_q^T the block `tn` t_p n_q^T, which is not symmetric.
+struct ContactStiffness {
+  EndGradients ends;
+  double kN = 0, kT = 0;                        ///< Pa
+  double kM = 0;                                ///< Pa: that of the bending spring over a²
+  double tn = 0;                                ///< Pa: dT by stretch
+  const ContactPrestress* prestress = nullptr;  ///< null: none
+  double rotation_scale = 1;                    ///< a, m; read with prestress
+
+  [[nodiscard]] ContactStiffness normal_part() const { return {.ends = ends, .kN = kN}; }
+  [[nodiscard]] ContactStiffness tangential_part() const { return {.ends = ends, .kT = kT, .tn = tn}; }
+  /// Stiffnesses over `unit`, Pa. Without prestress.
+  void divide(double unit) {
+    kN /= unit, kT /= unit;
+    if (kM != 0) kM /= unit;
+  }
+  /// block += K_pq, row-major B x B; B = 2 leaves rotations out.
+  template <int B>
+  void add(const EndGradient& p, const EndGradient& q, double* block) const {
+    for (int r = 0; r < B; ++r)
+      for (int c = 0; c < B; ++c)
+        block[r * B + c] += kN * p.normal[r] * q.normal[c] + kT * p.tangential[r] * q.tangential[c];
+    if (tn != 0) {
+      for (int r = 0; r < B; ++r)
+        for (int c = 0; c < B; ++c) block[r * B + c] += tn * p.tangential[r] * q.normal[c];
+    }
+    if (prestress != nullptr) add_prestress<B>(p, q, block);
+    if (B == 3 && kM != 0) block[8] += kM * p.bending() * q.bending();
+  }
+
+ private:
+  template <int B>
+  void add_prestress(const EndGradient& p, const EndGradient& q, double* block) const {
+    const double turn = 1 / rotation_scale;
+    const auto turns = [&](const EndGradient& end, int k) {
+      return k == 2 ? std::array{end.turns[0] * turn, end.turns[1] * turn} : std::array<double, 2>{};
+    };
+    for (int r = 0; r < B; ++r) {
+      for (int c = 0; c < B; ++c) {
+        const auto [r_i, r_j] = turns(p, r);
+        const auto [c_i, c_j] = turns(q, c);
+        block[r * B + c] += prestress_form(*prestress, {p.normal[r], p.tangential[r]}, r_i, r_j,
+                                           {q.normal[c], q.tangential[c]}, c_i, c_j);
+      }
     }
   }
-}
-
-/// block += the tangent of the bending spring kM on the rotations of one body, or with `between` that of one body by
-/// the other; nothing where B = 2.
-template <int B>
-void add_bending_tangent(double kM, double rotation_scale, bool between, double* block) {
-  if constexpr (B == 3) block[8] += (between ? -kM : kM) / (rotation_scale * rotation_scale);
-}
-
-/// block += the prestress of a contact between its ends p and q, as add_linear_spring_tangent.
-/// \param turns_p, turns_q derivatives of (theta_i, theta_j) by a theta of each end: (1/a, 0) of i, (0, 1/a) of j
-template <int B>
-void add_prestress_tangent(const ContactPrestress& g, const std::array<double, 3>& normal_p,
-                           const std::array<double, 3>& normal_q, const std::array<double, 3>& tangential_p,
-                           const std::array<double, 3>& tangential_q, const std::array<double, 2>& turns_p,
-                           const std::array<double, 2>& turns_q, double* block) {
-  for (int r = 0; r < B; ++r) {
-    for (int c = 0; c < B; ++c) {
-      const double r_i = r == 2 ? turns_p[0] : 0, r_j = r == 2 ? turns_p[1] : 0;
-      const double c_i = c == 2 ? turns_q[0] : 0, c_j = c == 2 ? turns_q[1] : 0;
-      block[r * B + c] +=
-          prestress_form(g, {normal_p[r], tangential_p[r]}, r_i, r_j, {normal_q[c], tangential_q[c]}, c_i, c_j);
-    }
-  }
-}
+};
 
 }  // namespace equidem

@@ -61,6 +61,16 @@ struct DegreesOfFreedom {
       0;  ///< rotations that no contact resists: held at 0, without effect on the result
 };
 
+/// Components of a disc that are no unknowns do not deform its contacts.
+inline void hold_end(const DegreesOfFreedom& unknowns, std::int32_t disc, EndGradient& end) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k < b && unknowns.held[static_cast<std::size_t>(disc) * b + k] == 0) continue;
+    end.normal[k] = end.tangential[k] = 0;
+    if (k == 2) end.turns = {};
+  }
+}
+
 /// Discs, contacts, springs and unknowns, from which forces are evaluated.
 struct SpringNetwork {
   const Assembly& assembly;

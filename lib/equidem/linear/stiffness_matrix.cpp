@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/stopwatch.hpp"
@@ -14,52 +15,41 @@ namespace {
 
 constexpr std::size_t discs_at_once = 1 << 12;
 
-/// Visit the blocks of a row of discs: visit(edge, coupling) for every contact of disc d with the block K_ij (i = d
-/// where the contact names d first; of a contact of a disc with its own image a block of zeros). \returns K_dd
+/// Visit the blocks of a row of discs: visit(contact, first, coupling) for every contact of disc d. `first`: the
+/// contact names d first; coupling() is the block K_ij, of a contact of a disc with its own image a block of zeros.
+/// \returns K_dd
 template <int B, typename Visit>
-std::array<double, B * B> visit_row(const SpringNetwork& network, double held_stiffness, std::size_t d,
-                                    const Visit& visit) {
+std::array<double, B * B> visit_row(const SpringNetwork& network, const ImageSigns& signs, double held_stiffness,
+                                    std::size_t d, const Visit& visit) {
   const auto& [assembly, graph, springs, unknowns] = network;
   const auto held = [&](std::size_t disc, int k) { return network.unknowns.held[disc * B + k] != 0; };
   std::array<double, B * B> diagonal{};
   for (const auto& edge : graph.of(d)) {
-    const Contact& contact = assembly.contacts[edge.contact];
-    const SpringConstants k = springs[edge.contact];
-    DeformationGradient g =
-        deformation_gradient(frame_of(assembly, static_cast<std::size_t>(edge.contact)), unknowns.rotation_scale);
-    std::array<double, B * B> coupling{};
-    if (contact.i == contact.j) {  // both ends move alike
-      for (int r = 0; r < 3; ++r) {
-        g.normal_i[r] += g.normal_j[r];
-        g.tangential_i[r] += g.tangential_j[r];
-      }
-    } else {
-      add_linear_spring_tangent<B>(k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, coupling.data());
-    }
+    const auto number = static_cast<std::size_t>(edge.contact);
+    const Contact& contact = assembly.contacts[number];
+    const ContactStiffness k = contact_stiffness(springs, number, frame_of(assembly, number), unknowns.rotation_scale);
+    const double sign = signs.of(contact);
     const bool first = static_cast<std::size_t>(contact.i) == d;
-    const auto &normal = first ? g.normal_i : g.normal_j, &tangential = first ? g.tangential_i : g.tangential_j;
-    add_linear_spring_tangent<B>(k, normal, normal, tangential, tangential, diagonal.data());
-    if (const ContactPrestress* const prestress = springs.prestress(static_cast<std::size_t>(edge.contact))) {
-      const double turn = 1 / unknowns.rotation_scale;
-      const bool own_image = contact.i == contact.j;
-      const std::array<double, 2> turns_i{turn, own_image ? turn : 0}, turns_j{own_image ? turn : 0, turn};
-      const auto& turns = first ? turns_i : turns_j;
-      add_prestress_tangent<B>(*prestress, normal, normal, tangential, tangential, turns, turns, diagonal.data());
-      if (!own_image)
-        add_prestress_tangent<B>(*prestress, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, turns_i, turns_j,
-                                 coupling.data());
+    if (contact.i == contact.j) {
+      const EndGradient both = k.ends.as_one(sign);
+      k.add<B>(both, both, diagonal.data());
+    } else if (first) {
+      k.add<B>(k.ends.i, k.ends.i, diagonal.data());
+    } else {
+      k.add<B>(k.ends.j, k.ends.j, diagonal.data());
     }
-    if (springs.bends() && contact.i != contact.j) {
-      const double kM = springs.bending(static_cast<std::size_t>(edge.contact));
-      add_bending_tangent<B>(kM, unknowns.rotation_scale, false, diagonal.data());
-      add_bending_tangent<B>(kM, unknowns.rotation_scale, true, coupling.data());
-    }
-    for (int r = 0; r < B; ++r) {
-      for (int c = 0; c < B; ++c) {
-        if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;
+    visit(number, first, [&] {
+      std::array<double, B * B> coupling{};
+      if (contact.i == contact.j) return coupling;
+      k.add<B>(k.ends.i, k.ends.j, coupling.data());
+      for (int r = 0; r < B; ++r) {
+        for (int c = 0; c < B; ++c) {
+          if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;
+        }
       }
-    }
-    visit(edge, coupling);
+      if (sign < 0) std::transform(coupling.begin(), coupling.end(), coupling.begin(), std::negate());
+      return coupling;
+    });
   }
   for (int k = 0; k < B; ++k) {
     if (!held(d, k)) continue;
@@ -71,30 +61,34 @@ std::array<double, B * B> visit_row(const SpringNetwork& network, double held_st
 
 /// The blocks of a disc and of the contacts that name it first: every block is written once, by one thread.
 template <int B>
-void assemble_disc(const SpringNetwork& network, double held_stiffness, std::size_t d, StiffnessMatrix& matrix) {
-  const auto diagonal = visit_row<B>(network, held_stiffness, d, [&](const auto& edge, const auto& coupling) {
-    if (static_cast<std::size_t>(network.assembly.contacts[edge.contact].i) != d) return;
-    std::copy(coupling.begin(), coupling.end(), &matrix.coupling[static_cast<std::size_t>(edge.contact) * B * B]);
-  });
+void assemble_disc(const SpringNetwork& network, const ImageSigns& signs, double held_stiffness, std::size_t d,
+                   StiffnessMatrix& matrix) {
+  const auto visit = [&](std::size_t contact, bool first, const auto& coupling) {
+    if (!first) return;
+    const auto block = coupling();
+    std::copy(block.begin(), block.end(), &matrix.coupling[contact * B * B]);
+  };
+  const auto diagonal = visit_row<B>(network, signs, held_stiffness, d, visit);
   std::copy(diagonal.begin(), diagonal.end(), &matrix.diagonal[d * B * B]);
 }
 
 template <int B>
 void add_row_sums(const SpringNetwork& network, double held_stiffness, std::size_t d, double* sums) {
-  const auto diagonal = visit_row<B>(network, held_stiffness, d, [&](const auto& edge, const auto& coupling) {
-    const bool first = static_cast<std::size_t>(network.assembly.contacts[edge.contact].i) == d;
-    for (int e = 0; e < B * B; ++e) sums[first ? e / B : e % B] += std::abs(coupling[e]);
-  });
+  const auto visit = [&](std::size_t, bool first, const auto& coupling) {
+    const auto block = coupling();
+    for (int e = 0; e < B * B; ++e) sums[first ? e / B : e % B] += std::abs(block[e]);
+  };
+  const auto diagonal = visit_row<B>(network, {}, held_stiffness, d, visit);
   for (int e = 0; e < B * B; ++e) sums[e / B] += std::abs(diagonal[e]);
 }
 
 template <int B>
 void assemble(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-              const DegreesOfFreedom& unknowns, StiffnessMatrix& matrix) {
+              const DegreesOfFreedom& unknowns, const ImageSigns& signs, StiffnessMatrix& matrix) {
   const double held_stiffness = springs.largest();
   parallel_ranges(assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
-      assemble_disc<B>({assembly, graph, springs, unknowns}, held_stiffness, d, matrix);
+      assemble_disc<B>({assembly, graph, springs, unknowns}, signs, held_stiffness, d, matrix);
     }
   });
 }
@@ -126,7 +120,8 @@ void multiply_row(const StiffnessMatrix& matrix, const Assembly& assembly, const
 }  // namespace
 
 double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns) {
-  const auto found = std::find(unknowns.held.begin(), unknowns.held.end(), 1);
+  const auto found = std::find_if(unknowns.held.begin(), unknowns.held.end(),
+                                  [](std::uint8_t held) { return held != DegreesOfFreedom::free; });
   if (found == unknowns.held.end()) return 1;
   const auto component = static_cast<std::size_t>(found - unknowns.held.begin());
   const auto block = static_cast<std::size_t>(matrix.block);
@@ -226,7 +221,7 @@ CompressedColumns with_upper_triangle(const CompressedColumns& lower) {
 }
 
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                                   const DegreesOfFreedom& unknowns) {
+                                   const DegreesOfFreedom& unknowns, const ImageSigns& signs) {
   stop_if_interrupted();
   StiffnessMatrix matrix;
   matrix.block = unknowns.per_disc;
@@ -234,9 +229,9 @@ StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph&
   matrix.diagonal.resize(assembly.size() * entries);
   matrix.coupling.resize(assembly.contacts.size() * entries);
   if (matrix.block == 3) {
-    assemble<3>(assembly, graph, springs, unknowns, matrix);
+    assemble<3>(assembly, graph, springs, unknowns, signs, matrix);
   } else {
-    assemble<2>(assembly, graph, springs, unknowns, matrix);
+    assemble<2>(assembly, graph, springs, unknowns, signs, matrix);
   }
   return matrix;
 }

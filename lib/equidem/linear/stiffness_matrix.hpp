@@ -58,11 +58,20 @@ CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assemb
 /// `rows` (then the columns of the entries) and `values` are the arrays of the CSR format as well.
 CompressedColumns with_upper_triangle(const CompressedColumns& lower);
 
-/// Tangent of the linear contact law, summed over contacts: K = sum kN g g^T + kT h h^T with the derivatives g, h of
-/// stretch and slip, and kM of bending springs between the rotations. Rows and columns of held components are those of
-/// a unit matrix times the largest spring.
+/// Motions of a periodic cell that change sign from one period to the next along an axis, exp(i q.L) = -1.
+struct ImageSigns {
+  bool change_along_x = false, change_along_y = false;
+
+  /// 1, or -1 where the image of disc j that the contact joins moves against disc j.
+  [[nodiscard]] double of(const Contact& contact) const {
+    return (change_along_x && contact.shift_x % 2 != 0) != (change_along_y && contact.shift_y % 2 != 0) ? -1 : 1;
+  }
+};
+
+/// The sum of ContactStiffness over contacts. Rows and columns of held components are those of a unit matrix times the
+/// largest spring.
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                                   const DegreesOfFreedom& unknowns);
+                                   const DegreesOfFreedom& unknowns, const ImageSigns& signs = {});
 
 /// sum_j |K_ij| of every row, Pa, without K itself.
 std::vector<double> row_sums(const SpringNetwork& network);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "equidem/contact/effects.hpp"
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/statistics.hpp"
@@ -136,40 +135,8 @@ class RatioPencil final : public StiffnessPencil {
     return std::abs(value - before) <= 0.01 * options_.tolerance;
   }
   [[nodiscard]] StiffnessMatrix stiffness(double ratio) const override {
-    const ContactSprings springs = with_ratio(springs_, ratio);
-    StiffnessMatrix matrix = assemble_stiffness(assembly_, graph_, springs, unknowns_);
-    if (options_.antiperiodic_x || options_.antiperiodic_y) change_signs(springs, matrix);
-    return matrix;
-  }
-
-  /// The phase exp(i q.L) = -1 of a contact that leads into the next period, or an odd number of periods on.
-  void change_signs(const ContactSprings& springs, StiffnessMatrix& matrix) const {
-    const int b = matrix.block;
-    for (std::size_t c = 0; c < assembly_.contacts.size(); ++c) {
-      const Contact& contact = assembly_.contacts[c];
-      const bool odd = (options_.antiperiodic_x && contact.shift_x % 2 != 0) !=
-                       (options_.antiperiodic_y && contact.shift_y % 2 != 0);
-      if (!odd) continue;
-      double* coupling = &matrix.coupling[c * b * b];
-      for (int k = 0; k < b * b; ++k) coupling[k] = -coupling[k];
-      if (contact.i == contact.j) subtract_self_contact(c, springs[c], matrix);
-    }
-  }
-  /// From (g_i + g_j)(g_i + g_j)^T to (g_i - g_j)(g_i - g_j)^T.
-  void subtract_self_contact(std::size_t index, const SpringConstants& k, StiffnessMatrix& matrix) const {
-    const Contact& contact = assembly_.contacts[index];
-    const DeformationGradient g = deformation_gradient(frame_of(assembly_, index), unknowns_.rotation_scale);
-    const int b = matrix.block;
-    double* diagonal = &matrix.diagonal[static_cast<std::size_t>(contact.i) * b * b];
-    for (int r = 0; r < b; ++r) {
-      for (int c = 0; c < b; ++c) {
-        const std::size_t component = static_cast<std::size_t>(contact.i) * b;
-        if (unknowns_.held[component + r] != 0 || unknowns_.held[component + c] != 0) continue;
-        diagonal[r * b + c] -=
-            2 * (k.kN * (g.normal_i[r] * g.normal_j[c] + g.normal_j[r] * g.normal_i[c]) +
-                 k.kT * (g.tangential_i[r] * g.tangential_j[c] + g.tangential_j[r] * g.tangential_i[c]));
-      }
-    }
+    return assemble_stiffness(assembly_, graph_, with_ratio(springs_, ratio), unknowns_,
+                              {options_.antiperiodic_x, options_.antiperiodic_y});
   }
 
   /// The rotational block is r times that at r = 1: one negative eigenvalue for each rotation that is resisted.

@@ -7,29 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/contact/linear_spring.hpp"
-
 namespace equidem {
-namespace {
-
-/// Blocks of one contact: of disc i, of disc j, and between them.
-struct Blocks {
-  std::array<double, 9> ii{}, jj{}, ij{};
-};
-
-Blocks blocks_of(const CellContact& contact, const SpringConstants& k, double rotation_scale) {
-  const DeformationGradient g = deformation_gradient(contact.frame, rotation_scale);
-  Blocks b;
-  add_linear_spring_tangent<3>(k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i, b.ii.data());
-  add_linear_spring_tangent<3>(k, g.normal_j, g.normal_j, g.tangential_j, g.tangential_j, b.jj.data());
-  add_linear_spring_tangent<3>(k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, b.ij.data());
-  for (auto* own : {&b.ii, &b.jj}) add_bending_tangent<3>(contact.kM, rotation_scale, false, own->data());
-  add_bending_tangent<3>(contact.kM, rotation_scale, true, b.ij.data());
-  return b;
-}
-
-}  // namespace
-
 BlochWaves::BlochWaves(PrimitiveCell cell, const std::vector<Inertia>& inertia, bool rotation)
     : cell_(std::move(cell)),
       per_disc_(rotation ? 3 : 2),
@@ -71,20 +49,26 @@ ComplexMatrix BlochWaves::assemble(Springs springs, Order order, Vec2 q) const {
     }
   };
   for (const CellContact& contact : cell_.contacts) {
-    SpringConstants k = contact.springs;
-    if (springs == Springs::normal) k.kT = 0;
-    if (springs == Springs::tangential) k = {0, any_tangential_ && k.kT == 0 ? 0 : k.kN};
-    const Blocks b = blocks_of(contact, k, cell_.rotation_scale);
+    ContactStiffness k = contact.stiffness(cell_.rotation_scale);
+    if (springs == Springs::normal) k = k.normal_part();
+    if (springs == Springs::tangential) {
+      k = k.tangential_part();
+      k.kT = any_tangential_ && k.kT == 0 ? 0 : contact.springs.kN;
+    }
+    std::array<double, 9> ii{}, jj{}, ij{};
+    k.add<3>(k.ends.i, k.ends.i, ii.data());
+    k.add<3>(k.ends.j, k.ends.j, jj.data());
+    k.add<3>(k.ends.i, k.ends.j, ij.data());
     const double phase = dot(q, contact.branch);
     // exp(i s phase) = 1 + i s phase - s² phase²/2 for a wave vector s q
     Complex factor = {std::cos(phase), std::sin(phase)};
     if (order == Order::first) factor = {0, phase};
     if (order == Order::second) factor = {-0.5 * phase * phase, 0};
     const double own = order == Order::all ? 1 : 0;
-    add(contact.i, contact.i, b.ii, own, false);
-    add(contact.j, contact.j, b.jj, own, false);
-    add(contact.i, contact.j, b.ij, factor, false);
-    add(contact.j, contact.i, b.ij, std::conj(factor), true);
+    add(contact.i, contact.i, ii, own, false);
+    add(contact.j, contact.j, jj, own, false);
+    add(contact.i, contact.j, ij, factor, false);
+    add(contact.j, contact.i, ij, std::conj(factor), true);
   }
   return matrix;
 }

@@ -23,6 +23,13 @@ struct CellContact {
   ContactFrame frame;  ///< normal, levers and offsets
   SpringConstants springs;
   double kM = 0;  ///< bending spring, N m/rad per metre of depth
+
+  [[nodiscard]] ContactStiffness stiffness(double rotation_scale) const {
+    return {.ends = end_gradients(frame, rotation_scale),
+            .kN = springs.kN,
+            .kT = springs.kT,
+            .kM = kM / (rotation_scale * rotation_scale)};
+  }
 };
 
 /// A cell of a periodic network. It may be oblique, unlike the period of an assembly.

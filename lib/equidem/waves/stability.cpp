@@ -173,13 +173,32 @@ void add_continuum(const Assembly& assembly, const ContactSprings& springs, cons
     s.sound.push_back(plane_waves(homogenized.gradient_stiffness, s.mass_per_area, {std::cos(angle), std::sin(angle)}));
 }
 
-/// Time steps of the springs: forces at rest change the highest frequency by a share of |N0|/(kN l). Lower frequencies,
-/// waves and the critical kT/kN may depend on them, and are left out.
-void add_without_prestress(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
-                           const std::vector<Inertia>& inertia, StabilityOptions options, Stability& s) {
-  options.natural_frequencies = 0;
-  add_frequencies(assembly, springs, supports, inertia, options, s);
-  s.natural.why_none = "forces at rest count, and frequencies are those of springs alone";
+/// Frequencies about a state of rest that is stable under the forces that contacts carry there.
+NaturalFrequencies frequencies_at_rest(const Assembly& assembly, const ContactSprings& springs,
+                                       std::span<const Support> supports, const std::vector<Inertia>& inertia,
+                                       const StabilityOptions& options, const Stability& s) {
+  NaturalFrequencies none;
+  none.why_none = "springs and forces at rest together are not stable";
+  if (springs.any_negative() || s.inertia.unstable_modes != 0) return none;
+  none.why_none = "the body is free to turn, and the forces at rest that count need not balance";
+  if (s.mechanisms.rigid_motions > 2) return none;
+  return natural_frequencies(assembly, springs, number_unknowns(assembly, springs, s.effects, supports), inertia,
+                             {.count = options.natural_frequencies, .solver = options.solver});
+}
+
+/// Time steps are those of the springs: forces at rest change the highest frequency by a share of |N0|/(kN l). Waves
+/// and the critical kT/kN may depend on them, and are left out.
+void add_with_prestress(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                        const std::vector<Inertia>& inertia, const StabilityOptions& options, Stability& s) {
+  StabilityOptions of_springs = options;
+  of_springs.natural_frequencies = 0;
+  add_frequencies(assembly, springs.with_prestress({}), supports, inertia, of_springs, s);
+  if (options.natural_frequencies > 0) {
+    Stopwatch watch;
+    s.natural = frequencies_at_rest(assembly, springs, supports, inertia, options, s);
+    s.times.add("natural frequencies", watch.lap());
+  }
+  s.reached = StabilityStage::natural_frequencies;
   s.critical = {.sought = false, .searched = "forces at rest count, and do not change with kT/kN"};
   s.reached = StabilityStage::critical_ratio;
 }
@@ -193,7 +212,7 @@ void find_stages(const Assembly& assembly, const ContactSprings& springs, std::s
                                          {.rotation = options.rotation, .memory_limit = options.solver.memory_limit});
     s.times.add("critical load", watch.lap());
     s.reached = StabilityStage::critical_load;
-    add_without_prestress(assembly, springs.with_prestress({}), supports, inertia, options, s);
+    add_with_prestress(assembly, springs, supports, inertia, options, s);
     return;
   }
   add_frequencies(assembly, springs, supports, inertia, options, s);

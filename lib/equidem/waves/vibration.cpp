@@ -111,15 +111,14 @@ TimeStepRules time_step_rules(const Assembly& assembly, const ContactSprings& sp
   double mass_over_stiffness = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    const SpringConstants k = springs[c];
-    const DeformationGradient g = deformation_gradient(frame_of(assembly, c), scale);
-    for (std::size_t r = 0; r < 3; ++r) {
-      diagonal[3 * contact.i + r] +=
-          k.kN * g.normal_i[r] * g.normal_i[r] + k.kT * g.tangential_i[r] * g.tangential_i[r];
-      diagonal[3 * contact.j + r] +=
-          k.kN * g.normal_j[r] * g.normal_j[r] + k.kT * g.tangential_j[r] * g.tangential_j[r];
-    }
-    for (const std::int32_t d : {contact.i, contact.j}) diagonal[3 * d + 2] += springs.bending(c) / (scale * scale);
+    const ContactStiffness k = contact_stiffness(springs, c, frame_of(assembly, c), scale);
+    const auto add = [&](std::int32_t disc, const EndGradient& end) {
+      std::array<double, 9> block{};
+      k.add<3>(end, end, block.data());
+      for (std::size_t r = 0; r < 3; ++r) diagonal[3 * disc + r] += block[4 * r];
+    };
+    add(contact.i, k.ends.i);
+    add(contact.j, k.ends.j);
     mass_over_stiffness =
         std::min(mass_over_stiffness, std::min(inertia[contact.i].mass, inertia[contact.j].mass) / k.kN);
   }

@@ -2,24 +2,9 @@
 #include "equidem/breakage/unbonded/contact_operator.hpp"
 
 #include <Eigen/SparseCore>
+#include <utility>
 
 namespace equidem {
-namespace {
-
-/// Derivatives of stretch and slip by the components of both discs, those of the second from index b on.
-struct FlatRows {
-  std::array<double, 6> normal{}, tangential{};
-
-  FlatRows(const DeformationGradient& by, std::size_t b) {
-    for (std::size_t k = 0; k < b; ++k) {
-      normal[k] = by.normal_i[k], normal[b + k] = by.normal_j[k];
-      tangential[k] = by.tangential_i[k], tangential[b + k] = by.tangential_j[k];
-    }
-  }
-};
-
-}  // namespace
-
 ContactOperator::ContactOperator(const Assembly& assembly, const DegreesOfFreedom& unknowns)
     : assembly_(assembly), unknowns_(unknowns) {
   const auto b = static_cast<std::size_t>(unknowns_.per_disc);
@@ -27,7 +12,7 @@ ContactOperator::ContactOperator(const Assembly& assembly, const DegreesOfFreedo
   for (std::size_t c = 0; c < assembly_.contacts.size(); ++c) {
     const Contact& contact = assembly_.contacts[c];
     rows_.push_back({static_cast<std::size_t>(contact.i) * b, static_cast<std::size_t>(contact.j) * b,
-                     deformation_gradient(frame_of(assembly_, c), unknowns_.rotation_scale)});
+                     end_gradients(frame_of(assembly_, c), unknowns_.rotation_scale)});
   }
   for (const std::uint8_t held : unknowns_.held) column_.push_back(held != 0 ? -1 : columns_++);
 }
@@ -38,8 +23,8 @@ ContactDeformation ContactOperator::deformation(std::size_t contact, std::span<c
   ContactDeformation d;
   for (std::size_t k = 0; k < b; ++k) {
     const double at_i = motion[rows.i + k], at_j = motion[rows.j + k];
-    d.normal += rows.by.normal_i[k] * at_i + rows.by.normal_j[k] * at_j;
-    d.tangential += rows.by.tangential_i[k] * at_i + rows.by.tangential_j[k] * at_j;
+    d.normal += rows.ends.i.normal[k] * at_i + rows.ends.j.normal[k] * at_j;
+    d.tangential += rows.ends.i.tangential[k] * at_i + rows.ends.j.tangential[k] * at_j;
   }
   return d;
 }
@@ -57,8 +42,8 @@ void ContactOperator::add_internal(std::size_t contact, const ContactForce& forc
   const Rows& rows = rows_[contact];
   const auto b = static_cast<std::size_t>(unknowns_.per_disc);
   for (std::size_t k = 0; k < b; ++k) {
-    internal[rows.i + k] += rows.by.normal_i[k] * force.normal + rows.by.tangential_i[k] * force.tangential;
-    internal[rows.j + k] += rows.by.normal_j[k] * force.normal + rows.by.tangential_j[k] * force.tangential;
+    internal[rows.i + k] += rows.ends.i.normal[k] * force.normal + rows.ends.i.tangential[k] * force.tangential;
+    internal[rows.j + k] += rows.ends.j.normal[k] * force.normal + rows.ends.j.tangential[k] * force.tangential;
   }
 }
 
@@ -68,13 +53,17 @@ CompressedColumns ContactOperator::matrix(std::span<const ContactTangent> tangen
   entries.reserve(static_cast<std::size_t>(columns_) + rows_.size() * 4 * b * b);
   for (std::int64_t c = 0; c < columns_; ++c) entries.emplace_back(c, c, ground);
   for (std::size_t c = 0; c < rows_.size(); ++c) {
-    const FlatRows rows(rows_[c].by, b);
-    const auto column = [&](std::size_t k) { return column_[k < b ? rows_[c].i + k : rows_[c].j + k - b]; };
-    for (std::size_t q = 0; q < 2 * b; ++q) {
-      const auto [n, t] = tangents[c].rate({rows.normal[q], rows.tangential[q]});
-      for (std::size_t p = 0; p < 2 * b; ++p) {
-        if (column(p) >= 0 && column(q) >= 0)
-          entries.emplace_back(column(p), column(q), rows.normal[p] * n + rows.tangential[p] * t);
+    const Rows& rows = rows_[c];
+    const ContactStiffness k{.ends = rows.ends, .kN = tangents[c].nn, .kT = tangents[c].tt, .tn = tangents[c].tn};
+    const std::pair<std::size_t, const EndGradient&> ends[] = {{rows.i, k.ends.i}, {rows.j, k.ends.j}};
+    for (const auto& [first_column, q] : ends) {
+      for (const auto& [first_row, p] : ends) {
+        std::array<double, 9> block{};
+        k.add<3>(p, q, block.data());
+        for (std::size_t e = 0; e < b * b; ++e) {
+          const std::int64_t row = column_[first_row + e % b], column = column_[first_column + e / b];
+          if (row >= 0 && column >= 0) entries.emplace_back(row, column, block[3 * (e % b) + e / b]);
+        }
       }
     }
   }

@@ -40,7 +40,7 @@ class ContactOperator {
  private:
   struct Rows {
     std::size_t i, j;  // first components
-    DeformationGradient by;
+    EndGradients ends;
   };
 
   const Assembly& assembly_;

@@ -31,7 +31,7 @@ ContactSprings springs_of(const Assembly& assembly, const SpringConstants& sprin
 
 void check(const Assembly& assembly, const CalibrateOptions& options) {
   if (options.bond_width && options.static_only) {
-    bad_input("kT < 0 is allowed, and bonds resist bending", "bending springs go with kT >= 0",
+    bad_input("kT < 0 is allowed, and bonds resist bending", "moduli then have poles at ratios kT/kN below 0",
               "Remove static_only, or bond_width");
   }
   if (!(options.tolerance >= 1e-14 && options.tolerance <= 1e-2)) {

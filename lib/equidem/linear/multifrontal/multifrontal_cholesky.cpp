@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -253,6 +254,7 @@ class LdltFactor final : public Factorization {
   IndefiniteOptions options_;
   std::vector<double> scale_;  // by row, in the order of elimination
   std::vector<FrontFactor> fronts_;
+  std::optional<Sweep> solve_sweep_;  // once the pivots of the fronts are known
   BufferPool pool_;
   FactorReport report_;
   std::int64_t softest_ = -1;       // unknown of the smallest pivot
@@ -265,6 +267,7 @@ LdltFactor::LdltFactor(std::shared_ptr<const SymbolicFactor> symbolic, const Mat
   const dense::OneThreadPerCall one_thread;
   choose_scales(k);
   factorize(k);
+  solve_sweep_.emplace(*symbolic_, [&](std::size_t t) { return solve_work(t); });
   write_report();
 }
 
@@ -463,36 +466,35 @@ void LdltFactor::write_report() {
 
 void LdltFactor::forward(std::vector<double>& y) const {
   std::vector<std::vector<double>> handed(fronts_.size());
-  const Sweep sweep(*symbolic_, [&](std::size_t t) { return solve_work(t); });
-  sweep.up([](std::size_t) { return std::size_t{0}; },
-           [&](std::size_t t, double*, const Children& children) {
-             const FrontFactor& f = fronts_[t];
-             const std::size_t n = f.ids.size(), k = f.pivots.count;
-             std::vector<double> x(n, 0.0);
-             auto& index = index_of_unknown(unknowns());
-             for (std::size_t r = 0; r < n; ++r) index[f.ids[r]] = static_cast<std::int32_t>(r);
-             // Right-hand sides enter where unknowns are own; what was delayed comes with the child that
-             // had it.
-             const auto b = static_cast<std::int64_t>(symbolic_->block);
-             const auto& node = symbolic_->tree.nodes[t];
-             for (std::int64_t p = node.begin * b; p < node.end * b; ++p) x[index[p]] = y[p];
-             for (const auto& child : children) {
-               const FrontFactor& g = fronts_[child.node];
-               const auto& values = handed[child.node];
-               for (std::size_t r = 0; r < values.size(); ++r) x[index[g.ids[g.pivots.count + r]]] += values[r];
-               handed[child.node] = {};
-             }
-             dense::solve_lower(k, 1, f.lower.data(), n, x.data(), n, true);
-             dense::subtract_product(n - k, 1, k, f.lower.data() + k, n, x.data(), n, x.data() + k, n);
-             for (std::size_t p = 0; p < k; ++p) y[f.ids[p]] = x[p];
-             if (symbolic_->tree.nodes[t].parent >= 0) {
-               handed[t].assign(x.begin() + static_cast<std::ptrdiff_t>(k), x.end());
-             } else {
-               for (std::size_t r = k; r < n; ++r) y[f.ids[r]] = 0;  // nothing holds these
-             }
-             divide_by_d(f, y);
-           },
-           [](double) {});
+  solve_sweep_->up([](std::size_t) { return std::size_t{0}; },
+                   [&](std::size_t t, double*, const Children& children) {
+                     const FrontFactor& f = fronts_[t];
+                     const std::size_t n = f.ids.size(), k = f.pivots.count;
+                     std::vector<double> x(n, 0.0);
+                     auto& index = index_of_unknown(unknowns());
+                     for (std::size_t r = 0; r < n; ++r) index[f.ids[r]] = static_cast<std::int32_t>(r);
+                     // Right-hand sides enter where unknowns are own; what was delayed comes with the child that
+                     // had it.
+                     const auto b = static_cast<std::int64_t>(symbolic_->block);
+                     const auto& node = symbolic_->tree.nodes[t];
+                     for (std::int64_t p = node.begin * b; p < node.end * b; ++p) x[index[p]] = y[p];
+                     for (const auto& child : children) {
+                       const FrontFactor& g = fronts_[child.node];
+                       const auto& values = handed[child.node];
+                       for (std::size_t r = 0; r < values.size(); ++r) x[index[g.ids[g.pivots.count + r]]] += values[r];
+                       handed[child.node] = {};
+                     }
+                     dense::solve_lower(k, 1, f.lower.data(), n, x.data(), n, true);
+                     dense::subtract_product(n - k, 1, k, f.lower.data() + k, n, x.data(), n, x.data() + k, n);
+                     for (std::size_t p = 0; p < k; ++p) y[f.ids[p]] = x[p];
+                     if (symbolic_->tree.nodes[t].parent >= 0) {
+                       handed[t].assign(x.begin() + static_cast<std::ptrdiff_t>(k), x.end());
+                     } else {
+                       for (std::size_t r = k; r < n; ++r) y[f.ids[r]] = 0;  // nothing holds these
+                     }
+                     divide_by_d(f, y);
+                   },
+                   [](double) {});
 }
 
 void LdltFactor::divide_by_d(const FrontFactor& f, std::vector<double>& y) {
@@ -513,8 +515,7 @@ void LdltFactor::divide_by_d(const FrontFactor& f, std::vector<double>& y) {
 }
 
 void LdltFactor::backward(std::vector<double>& y) const {
-  const Sweep sweep(*symbolic_, [&](std::size_t t) { return solve_work(t); });
-  sweep.down([&](std::size_t t) {
+  solve_sweep_->down([&](std::size_t t) {
     const FrontFactor& f = fronts_[t];
     const std::size_t n = f.ids.size(), k = f.pivots.count;
     std::vector<double> x(n);

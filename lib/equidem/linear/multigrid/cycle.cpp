@@ -201,7 +201,7 @@ void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& option
   });
   masses = node_masses(*grid, places, masses);
   grid->keep_nodes(masses);
-  CellStiffness cells = stiffness_of_contacts(*grid, assembly, springs, unknowns, unit_);
+  CellStiffness cells = stiffness_of_contacts(*grid, network, unit_);
   auto transfer = std::make_unique<Transfer>(*grid, places);
   order_ = transfer->order();
   // (q_i + q_j)² <= 2 q_i² + 2 q_j² in the energy of every contact: no eigenvalue of D^-1 K exceeds 2.

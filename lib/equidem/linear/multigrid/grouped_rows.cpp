@@ -28,19 +28,6 @@ std::size_t slots_of(const ContactGraph& graph, std::size_t disc) {
   return slots;
 }
 
-/// The lower triangle of a symmetric block by rows.
-using Triangle = std::array<double, 6>;
-
-void add_square(double k, const std::array<double, 3>& g, Triangle& block) {
-  const double x = k * g[0], y = k * g[1], t = k * g[2];
-  block[0] += x * g[0];
-  block[1] += y * g[0];
-  block[2] += y * g[1];
-  block[3] += t * g[0];
-  block[4] += t * g[1];
-  block[5] += t * g[2];
-}
-
 }  // namespace
 
 GroupedRows::GroupedRows(const SpringNetwork& network, std::span<const std::int32_t> order,
@@ -153,31 +140,27 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
   for (std::size_t lane = 0; lane < rows; ++lane) {
     const auto disc = static_cast<std::size_t>(order[first_row + lane]);
     std::size_t slot = first_slot;
-    Triangle sum{};
+    Block diagonal{};
     for (const auto& edge : network.graph.of(disc)) {
       const auto contact = static_cast<std::size_t>(edge.contact);
       const Contact& c = network.assembly.contacts[contact];
-      const SpringConstants given = network.springs[contact], k{given.kN / unit, given.kT / unit};
       const double scale = network.unknowns.rotation_scale;
-      const double kM = c.i == c.j ? 0 : network.springs.bending(contact) / (unit * scale * scale);
       const ContactFrame frame = frame_of(network.assembly, contact);
-      const DeformationGradient g = deformation_gradient(frame, scale);
-      std::array<double, 3> normal{}, tangential{};
+      ContactStiffness k = contact_stiffness(network.springs, contact, frame, scale);
+      k.divide(unit);
       for (const bool from_i : {true, false}) {
         if (static_cast<std::size_t>(from_i ? c.i : c.j) != disc) continue;
-        fill_slot(frame, k, kM, scale, from_i, slot, lane);
+        fill_slot(frame, k, from_i, slot, lane);
         other_[slot * lanes + lane] = row_of[edge.other];
         ++slot;
-        for (std::size_t e = 0; e < 3; ++e) {
-          normal[e] += (from_i ? g.normal_i : g.normal_j)[e];
-          tangential[e] += (from_i ? g.tangential_i : g.tangential_j)[e];
-        }
       }
-      add_square(k.kN, normal, sum);
-      add_square(k.kT, tangential, sum);
-      sum[5] += kM;
+      const auto add = [&](const EndGradient& end) { k.add<3>(end, end, diagonal.data()); };
+      if (c.i == c.j) {
+        add(k.ends.as_one(1));
+      } else {
+        add(static_cast<std::size_t>(c.i) == disc ? k.ends.i : k.ends.j);
+      }
     }
-    Block diagonal{sum[0], sum[1], sum[3], sum[1], sum[2], sum[4], sum[3], sum[4], sum[5]};
     for (std::size_t e = 0; e < 3; ++e) {
       const bool is_held = e < b && network.unknowns.held[disc * b + e] != 0;
       if (is_held) masks_[static_cast<std::size_t>(free_[group]) * 3 * lanes + e * lanes + lane] = 0;
@@ -189,8 +172,9 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
   }
 }
 
-void GroupedRows::fill_slot(const ContactFrame& frame, const SpringConstants& k, double kM, double scale, bool from_i,
-                            std::size_t slot, std::size_t lane) {
+void GroupedRows::fill_slot(const ContactFrame& frame, const ContactStiffness& k, bool from_i, std::size_t slot,
+                            std::size_t lane) {
+  const double scale = k.rotation_scale;
   float* place = &geometry_[slot * lanes * static_cast<std::size_t>(kind_.fields()) + lane];
   const auto put = [&](double value) {
     *place = static_cast<float>(value);
@@ -210,7 +194,7 @@ void GroupedRows::fill_slot(const ContactFrame& frame, const SpringConstants& k,
     put(k.kN);
     put(k.kT);
   }
-  if (kind_.bending) put(kM);
+  if (kind_.bending) put(k.kM);
 }
 
 GroupedRows::Groups GroupedRows::groups_of(RowRange rows) const {

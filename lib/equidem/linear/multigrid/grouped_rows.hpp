@@ -108,8 +108,7 @@ class GroupedRows {
   void set_inverse(std::size_t number, std::size_t lane, const Entry& entry);
   void fill(const SpringNetwork& network, std::span<const std::int32_t> order, const std::vector<std::int32_t>& row_of,
             std::size_t group, double unit);
-  void fill_slot(const ContactFrame& frame, const SpringConstants& k, double kM, double scale, bool from_i,
-                 std::size_t slot, std::size_t lane);
+  void fill_slot(const ContactFrame& frame, const ContactStiffness& k, bool from_i, std::size_t slot, std::size_t lane);
 
   RowKind kind_;
   float kN_ = 0, kT_ = 0;                 // over the unit, where all contacts have the same

@@ -205,36 +205,34 @@ void add_derivative(const Shape& shape, const std::array<double, 3>& of_disc, bo
   }
 }
 
-/// \param kM over the square of a, Pa
-void add_contact(const Grid& grid, std::int32_t cell, const Assembly& assembly, std::size_t c, SpringConstants k,
-                 double kM, const DegreesOfFreedom& unknowns, double* matrix) {
+/// \param unit Pa, by which springs are divided
+void add_contact(const Grid& grid, std::int32_t cell, const SpringNetwork& network, std::size_t c, double unit,
+                 double* matrix) {
+  const auto& [assembly, graph, springs, unknowns] = network;
   const Contact& contact = assembly.contacts[c];
   const double a = unknowns.rotation_scale;
   const Place middle = grid.place_in(cell, midpoint(assembly, contact, a));
   const Vec2 half = (0.5 / a) * assembly.branch(contact);
   const double s = half.x / grid.spacing().x, t = half.y / grid.spacing().y;
-  DeformationGradient g = deformation_gradient(frame_of(assembly, c), a);
-  const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  for (std::size_t e = 0; e < 3; ++e) {
-    if (e >= b || unknowns.held[contact.i * b + e] != 0) g.normal_i[e] = g.tangential_i[e] = 0;
-    if (e >= b || unknowns.held[contact.j * b + e] != 0) g.normal_j[e] = g.tangential_j[e] = 0;
-  }
-  CellVector normal{}, tangential{};
-  const Shape of_i = grid.shape({middle.cell, middle.s - s, middle.t - t});
-  add_derivative(of_i, g.normal_i, b == 3, normal);
-  add_derivative(of_i, g.tangential_i, b == 3, tangential);
-  const Shape of_j = grid.shape({middle.cell, middle.s + s, middle.t + t});
-  add_derivative(of_j, g.normal_j, b == 3, normal);
-  add_derivative(of_j, g.tangential_j, b == 3, tangential);
-  grid_functions().add_squares(k.kN, normal.data(), k.kT, tangential.data(), matrix);
-  if (kM == 0 || b < 3) return;
-  const auto turn = [&](std::int32_t disc, double sign) {
-    return std::array<double, 3>{0, 0, unknowns.held[disc * b + 2] != 0 ? 0 : sign};
+  ContactStiffness k = contact_stiffness(springs, c, frame_of(assembly, c), a);
+  k.divide(unit);
+  const bool turns = unknowns.per_disc == 3;
+  hold_end(unknowns, contact.i, k.ends.i);
+  hold_end(unknowns, contact.j, k.ends.j);
+  const Shape of_i = grid.shape({middle.cell, middle.s - s, middle.t - t}),
+              of_j = grid.shape({middle.cell, middle.s + s, middle.t + t});
+  const auto derivative = [&](const std::array<double, 3>& by_i, const std::array<double, 3>& by_j) {
+    CellVector sum{};
+    add_derivative(of_i, by_i, turns, sum);
+    add_derivative(of_j, by_j, turns, sum);
+    return sum;
   };
-  CellVector bending{};
-  add_derivative(of_i, turn(contact.i, -1), true, bending);
-  add_derivative(of_j, turn(contact.j, 1), true, bending);
-  grid_functions().add_squares(kM, bending.data(), 0, bending.data(), matrix);
+  const CellVector normal = derivative(k.ends.i.normal, k.ends.j.normal),
+                   tangential = derivative(k.ends.i.tangential, k.ends.j.tangential);
+  grid_functions().add_squares(k.kN, normal.data(), k.kT, tangential.data(), matrix);
+  if (k.kM == 0 || !turns) return;
+  const CellVector bending = derivative({0, 0, k.ends.i.bending()}, {0, 0, k.ends.j.bending()});
+  grid_functions().add_squares(k.kM, bending.data(), 0, bending.data(), matrix);
 }
 
 /// The motion of a node by the unknowns of a coarser cell, 3 x 12.
@@ -277,26 +275,22 @@ class RowColumns {
 
 }  // namespace
 
-CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
-                                    const DegreesOfFreedom& unknowns, double unit) {
+CellStiffness stiffness_of_contacts(const Grid& grid, const SpringNetwork& network, double unit) {
+  const Assembly& assembly = network.assembly;
   std::vector<std::int32_t> cell(assembly.contacts.size());
   parallel_ranges(cell.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Vec2 middle = midpoint(assembly, assembly.contacts[c], unknowns.rotation_scale);
+      const Vec2 middle = midpoint(assembly, assembly.contacts[c], network.unknowns.rotation_scale);
       cell[c] = grid.host(grid.place(middle)).cell;
     }
   });
   const Buckets contacts = sort_into_buckets(cell, grid.cells());
-  const double bending_unit = unit * unknowns.rotation_scale * unknowns.rotation_scale;
   CellStiffness result(grid.cells() * cell_unknowns * cell_unknowns);
   parallel_ranges(grid.cells(), cells_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       double sum[cell_unknowns * cell_unknowns] = {};
-      for (const std::int32_t c : contacts.of(k)) {
-        const SpringConstants spring = springs[c];
-        add_contact(grid, static_cast<std::int32_t>(k), assembly, c, {spring.kN / unit, spring.kT / unit},
-                    springs.bending(static_cast<std::size_t>(c)) / bending_unit, unknowns, sum);
-      }
+      for (const std::int32_t c : contacts.of(k))
+        add_contact(grid, static_cast<std::int32_t>(k), network, static_cast<std::size_t>(c), unit, sum);
       std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
     }
   });

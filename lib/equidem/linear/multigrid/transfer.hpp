@@ -73,8 +73,7 @@ std::vector<double> node_masses(const Grid& grid, std::span<const Place> places,
 using CellStiffness = LargeVector<double>;
 
 /// \param unit Pa, by which springs are divided
-CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
-                                    const DegreesOfFreedom& unknowns, double unit);
+CellStiffness stiffness_of_contacts(const Grid& grid, const SpringNetwork& network, double unit);
 /// Projects the energies of the cells of a fine grid: its nodes are moved by the functions of the cells of `coarse`.
 CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const CellStiffness& cells);
 

@@ -35,24 +35,14 @@ double product(std::span<const double> a, std::span<const double> b) {
 
 /// The springs of a contact as changes of K that take them out.
 std::vector<RankOneChange> taken_out(const SpringNetwork& network, std::size_t number) {
-  const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
   const Contact& contact = network.assembly.contacts[number];
-  const SpringConstants springs = network.springs[number];
-  const DeformationGradient g =
-      deformation_gradient(frame_of(network.assembly, number), network.unknowns.rotation_scale);
-  const auto free_part = [&](std::int32_t disc, std::array<double, 3> x) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      if (r >= b || network.unknowns.held[static_cast<std::size_t>(disc) * b + r] != 0) x[r] = 0;
-    }
-    return x;
-  };
+  ContactStiffness k =
+      contact_stiffness(network.springs, number, frame_of(network.assembly, number), network.unknowns.rotation_scale);
+  hold_end(network.unknowns, contact.i, k.ends.i);
+  hold_end(network.unknowns, contact.j, k.ends.j);
   std::vector<RankOneChange> changes;
-  if (springs.kN != 0)
-    changes.push_back(
-        {-springs.kN, contact.i, contact.j, free_part(contact.i, g.normal_i), free_part(contact.j, g.normal_j)});
-  if (springs.kT != 0)
-    changes.push_back({-springs.kT, contact.i, contact.j, free_part(contact.i, g.tangential_i),
-                       free_part(contact.j, g.tangential_j)});
+  if (k.kN != 0) changes.push_back({-k.kN, contact.i, contact.j, k.ends.i.normal, k.ends.j.normal});
+  if (k.kT != 0) changes.push_back({-k.kT, contact.i, contact.j, k.ends.i.tangential, k.ends.j.tangential});
   return changes;
 }
 
