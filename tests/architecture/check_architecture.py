@@ -6,8 +6,8 @@
 
 reads a source tree and prints every broken rule, one per line, as "file:line: what is wrong". Exit code 1 if there is
 one. The order of the rooms is read from lib/CMakeLists.txt; the lines of each room, the order of folders inside rooms,
-short pairs of files and includes that run backwards are listed in tests/architecture/house.toml: these lists may only
-shrink.
+short pairs of files, includes that run backwards and terms to avoid (docs/vocabulary.md) are listed in
+tests/architecture/house.toml: these lists may only shrink.
 
     check_architecture.py FOLDER --lines
 
@@ -26,6 +26,7 @@ import sys
 import tomllib
 
 HOUSE = "tests/architecture/house.toml"
+VOCABULARY = "docs/vocabulary.md"
 SHORTEST_PAIR = 100  # lines of a pair NAME.cpp, NAME.hpp: one concept that a reader has
 LONGEST_SOURCE = 800  # lines
 WIDEST_LINE = 120  # characters
@@ -308,8 +309,36 @@ def check_order_of_folders(texts, house):
         yield HOUSE, 1, f"'{arrow}' runs backwards nowhere any more: take it from [backward]"
 
 
+def has_words(path):
+    """A file that people read the words of: comments, messages, help, pages."""
+    written = path.startswith(("lib/", "tools/")) and path.endswith((".cpp", ".hpp", ".py", ".txt", ".csv", ".html"))
+    page = path.endswith(".md") and (path.startswith("docs/") or path in ("README.md", "CONTRIBUTING.md"))
+    return (written or page) and path != VOCABULARY and not path.endswith("CMakeLists.txt")
+
+
+def lines_with_words(texts, words):
+    """Term: [(file, line)] for each term to avoid, a regular expression of whole words."""
+    found = {}
+    for term in words:
+        pattern = re.compile(rf"\b(?:{term})\b", re.IGNORECASE)
+        for path, text in texts.items():
+            if pattern.search(text):
+                found.setdefault(term, []).extend((path, number) for number, line in enumerate(text.splitlines(), 1)
+                                                  if pattern.search(line))
+    return found
+
+
+def check_words(texts, house):
+    for term, places in lines_with_words(texts, house["words"]).items():
+        most = house["words"][term]
+        if len(places) > most:
+            path, number = places[-1]
+            yield path, number, (f"'{term}' stands in {len(places)} lines, {most} at most: {VOCABULARY} has another term, "
+                                 "or lower the number of others")
+
+
 def house_of(root):
-    empty = {"lines": {}, "budget": {}, "folders": {}, "backward": {}, "short": []}
+    empty = {"lines": {}, "budget": {}, "folders": {}, "backward": {}, "short": [], "words": {}}
     path = os.path.join(root, HOUSE)
     if not os.path.exists(path):
         return None
@@ -326,10 +355,10 @@ def check_house(texts, root):
     yield from check_order_of_folders(texts, house)
 
 
-def sources_of(root):
+def sources_of(root, wanted=lambda path: path.endswith((".cpp", ".hpp")) and path.startswith(("lib/", "tools/"))):
     texts = {}
     for path in files_of(root):
-        if path.endswith((".cpp", ".hpp")) and path.startswith(("lib/", "tools/")):
+        if wanted(path):
             with open(os.path.join(root, path), encoding="utf-8") as file:
                 texts[path] = file.read()
     return texts
@@ -354,6 +383,8 @@ def lower(root):
     kept = {"lines": lines, "budget": house["budget"], "folders": {r: f for r, f in folders.items() if len(f) > 1},
             "backward": {a: min(n, len(backward[a])) for a, n in house["backward"].items() if a in backward},
             "short": [stem for stem in house["short"] if stem in short]}
+    words = lines_with_words(sources_of(root, has_words), house["words"])
+    kept["words"] = {term: min(most, len(words.get(term, ()))) for term, most in house["words"].items()}
     with open(os.path.join(root, HOUSE), encoding="utf-8") as file:
         head = "".join(line for line in file if line.startswith("#"))
     with open(os.path.join(root, HOUSE), "w", encoding="utf-8") as file:
@@ -362,7 +393,7 @@ def lower(root):
 
 def text_of(house):
     rows = ["short = ["] + [f'  "{stem}",' for stem in sorted(house["short"])] + ["]"]
-    for table in ("lines", "budget", "folders", "backward"):
+    for table in ("lines", "budget", "folders", "backward", "words"):
         rows += ["", f"[{table}]"] + [f'"{key}" = {json_of(value)}' for key, value in house[table].items()]
     return "\n".join(rows) + "\n"
 
@@ -385,7 +416,7 @@ def violations(root):
     if not rooms:
         yield "lib/CMakeLists.txt", 1, "it lists no rooms in set(EQUIDEM_ROOMS ...)"
         return
-    used, includes, types, sources, paths = {}, {}, {}, {}, list(files_of(root))
+    used, includes, types, sources, words, paths = {}, {}, {}, {}, {}, list(files_of(root))
     yield from check_folders(paths)
     for path in paths:
         full = os.path.join(root, path)
@@ -400,6 +431,8 @@ def violations(root):
             continue
         if path.startswith(("lib/", "tools/")) and path.endswith((".cpp", ".hpp")):
             sources[path] = text
+        if has_words(path):
+            words[path] = text
         if is_source(path) and not has_licence(path, text):
             yield path, 1, f"the first line is not '{SPDX}'"
         if path.endswith(SOURCES):
@@ -417,6 +450,7 @@ def violations(root):
             if MACHINE_PATH.search(line) and not line.startswith("#!"):
                 yield path, number, f"a path of one machine: {line.strip()[:100]}"
     yield from check_house(sources, root)
+    yield from check_words(words, house_of(root) or {"words": {}})
     for circle in circles(includes):
         yield circle[0], 1, f"headers include one another: {', '.join(circle)}"
 

@@ -125,7 +125,7 @@ class TheCheck(unittest.TestCase):
     def house(self, **changes):
         lines = {"lib/equidem/core": 2, "lib/equidem/contact": 3, "lib/equidem/output": 3, "tools/equidem": 4, **changes.pop("lines", {})}
         short = ["lib/equidem/core/error", "lib/equidem/core/text", "lib/equidem/contact/spring", "lib/equidem/output/picture"]
-        parts = {"lines": lines, "budget": {}, "folders": {}, "backward": {}, "short": short, **changes}
+        parts = {"lines": lines, "budget": {}, "folders": {}, "backward": {}, "short": short, "words": {}, **changes}
         return {"tests/architecture/house.toml": text_of(parts),
                 "lib/equidem/core/error.hpp": f"// {SPDX}\n", "lib/equidem/core/text.hpp": f"// {SPDX}\n"}
 
@@ -160,6 +160,15 @@ class TheCheck(unittest.TestCase):
         allowed = {**back, "backward": {"core: . -> files": 1}}
         self.assertEqual(violations_of({**self.house(lines=lines, **allowed), **below}), [])
         self.fails_with(self.house(backward={"core: . -> files": 1}), "runs backwards nowhere any more")
+
+    def test_rejects_more_lines_with_a_term_to_avoid(self):
+        words = {"rub(?:s|bing)?": 1, "push": 0}
+        code = {"lib/equidem/core/text.hpp": f"// {SPDX}\n// Two discs rub.\nvoid f() {{ v.push_back(1); }}  // the rubber\n"}
+        house = self.house(lines={"lib/equidem/core": 9}, words=words)
+        self.assertEqual(violations_of({**house, **code}), [])
+        self.fails_with({**house, **code, "docs/page.md": "Contacts that are Rubbing.\n"}, "stands in 2 lines, 1 at most")
+        self.fails_with({**house, **code, "docs/page.md": "They push.\n"}, "docs/page.md:1: 'push'")
+        self.assertEqual(violations_of({**house, **code, "docs/vocabulary.md": "Avoid push.\n"}), [])
 
     def test_rejects_a_huge_figure(self):
         self.fails_with({"data/a/figure.svg": "<svg>" + " " * 300_000}, "data/a/figure.svg:1", "keep its PNG alone")

@@ -138,6 +138,8 @@ class QuasistaticResume(ProgramTest):
         for change, told in (("strength.seed=2", "strength.seed is"), ("support.1.uy=2e-6", "support.1.uy is 1e-06 there and 2e-06"),
                              ("quasistatic.legs=[2.0, 1.0]", "quasistatic.legs is given here alone")):
             self.check_error(equidem(*command, "--set", change, "--resume"), 2, "of another case", told)
+        for change in ("homogenize.bounds=affine", "schedule=[{name=\"ramp\", kind=\"ramp\", value=1, start=0, end=1}]"):
+            self.check_done(equidem(*command, "--set", change, "--resume"))
 
     def test_events_of_an_earlier_version_are_refused_by_their_words_and_columns(self):
         out, case = self.folder / "out", CASES / "frictional_notch.toml"

@@ -250,6 +250,15 @@ class Resume(RunTest):
         # What is written and printed may change.
         self.run_case(SHAKE, *short, "--resume", "--set", "title=again", "--set", "output.files=['csv']")
 
+    def test_tables_that_no_motion_depends_on_may_change(self):
+        out = self.folder / "out"
+        short = ("--out", out, "--set", "run.duration=2e-4")
+        self.run_case(SHAKE, *short)
+        for option in ("strength={tension=1.0e3, shear=1.0e3}", "quasistatic.max_events=5", "homogenize.bounds=affine",
+                       "solver.method=cholmod"):
+            with self.subTest(option):
+                self.run_case(SHAKE, *short, "--resume", "--set", option)
+
     def test_files_that_a_case_names_are_part_of_it(self):
         text = "[springs]\nkN = 1e9\nkT = 0.0\n[run]\nduration = 1e-4\n"
         case = self.write_case([(0, 0), (2 * RADIUS, 0)], [[0, 1, 0, 0]], text)

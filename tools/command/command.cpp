@@ -193,31 +193,43 @@ void check_taken(const Case& resolved, std::string_view verb) {
                "Remove it; solve, homogenize, calibrate, stability, run, export and equidem-mpi take it");
 }
 
-void OutputPlan::expect(const std::string& name) const {
-  if (options_.out) check_writable(*options_.out / name, options_.overwrite || replaces_);
+std::vector<std::string> plot_files(const std::string& name) {
+  return {name + ".csv", name + ".gp", name + ".svg", name + ".png"};
 }
 
-void OutputPlan::expect_file(const std::filesystem::path& path) const {
+static void check_named(const std::filesystem::path& path, bool overwrite) {
   const auto folder = path.parent_path();
   if (!folder.empty() && !std::filesystem::exists(folder)) {
     bad_input(fmt::format("cannot write '{}'", path.string()), fmt::format("there is no folder '{}'", folder.string()),
               "Make it, or correct the name");
   }
-  check_writable(path, options_.overwrite);
+  check_writable(path, overwrite);
 }
 
 void OutputPlan::expect_json() const {
-  if (options_.json && *options_.json != "-") expect_file(*options_.json);
+  if (options_.json && *options_.json != "-") check_named(*options_.json, options_.overwrite);
 }
 
-void OutputPlan::expect_results() const {
-  expect_json();
-  for (const char* name : {"result.json", "case.toml"}) expect(name);
-  if (has_page(options_.verb)) expect(page_name);
-}
-
-void OutputPlan::expect_plot(const std::string& name) const {
-  for (const char* end : {".csv", ".gp", ".svg", ".png"}) expect(name + end);
+void OutputPlan::expect_results(const std::vector<OutputPart>& parts) const {
+  namespace fs = std::filesystem;
+  std::vector<fs::path> taken;
+  const auto take = [&](const std::string& what, const fs::path& path, bool named) {
+    named ? check_named(path, options_.overwrite) : check_writable(path, options_.overwrite || replaces_);
+    std::error_code ignored;
+    const fs::path place = fs::weakly_canonical(fs::absolute(path), ignored);
+    if (std::ranges::find(taken, place) != taken.end())
+      bad_input(fmt::format("{} and another result would both be written to '{}'", what, path.string()),
+                "one would replace the other", "Give it a file of its own");
+    taken.push_back(place);
+  };
+  if (options_.json && *options_.json != "-") take("the JSON", *options_.json, true);
+  if (options_.out) take("the results", *options_.out / "result.json", false);
+  if (options_.out && has_page(options_.verb)) take("the page", *options_.out / page_name, false);
+  for (const OutputPart& part : parts) {
+    const bool named = part.place == OutputPart::file;
+    for (const std::string& name : part.files)
+      if (named || options_.out) take(part.name, named ? fs::path(name) : *options_.out / name, named);
+  }
 }
 
 namespace {
@@ -389,7 +401,7 @@ class Deliverer {
   void warn(const std::string& sentence) {
     if (std::ranges::find(warnings_, sentence) != warnings_.end()) return;
     warnings_.push_back(sentence);
-    results_.line("WARNING", sentence);
+    results_.warning("WARNING", sentence);
   }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
   /// \param printed warnings go to stderr, and the failure ends the verb; else a caller in memory has both

@@ -101,25 +101,48 @@ Case read_case(const CommonOptions& options);
 ///         the verb takes neither
 void check_taken(const Case& resolved, std::string_view verb);
 
+/// case.toml in --out, if there is one, which reproduces the computation.
+/// \param resolved a Case or the document of another kind of case
+template <typename Resolved>
+void write_case(const CommonOptions& options, const Resolved& resolved) {
+  if (options.out) write_file(*options.out / "case.toml", to_toml(resolved, *options.out), true);
+}
+
+/// What a verb writes beside its results: a table, a picture, the case. It is declared before the computation, which
+/// checks its files then; it is written after it, and fails alone.
+struct OutputPart {
+  enum Place {
+    folder,  ///< --out
+    page,    ///< likewise, and it is drawn again for a page of results in memory: it owns what it refers to
+    file,    ///< that it names itself, also without --out
+  };
+  std::string name;                                      ///< for warnings
+  std::function<void(const CommonOptions& into)> write;  ///< into the folder --out of the options
+  Place place = folder;
+  std::vector<std::string> files = {};  ///< in the folder, or the file that it names itself
+};
+/// NAME.csv, .gp, .svg and .png, which write_plot writes.
+std::vector<std::string> plot_files(const std::string& name);
+/// case.toml, which reproduces the computation.
+/// \param resolved returns a Case, or the document of another kind of case, that the part keeps
+template <typename Resolved>
+OutputPart case_part(const Resolved& resolved) {
+  const auto write = [=](const CommonOptions& into) { write_case(into, resolved()); };
+  return {"case.toml", write, OutputPart::page, {"case.toml"}};
+}
+
 /// Checks before the computation that the files of a verb can be written.
 class OutputPlan {
  public:
   /// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
   explicit OutputPlan(const CommonOptions& options, bool replaces = false) : options_(options), replaces_(replaces) {}
 
-  /// A file NAME in --out, if there is one.
-  /// \throws Error (bad_input) where it could not be written
-  void expect(const std::string& name) const;
-  /// A file named by the user, in an existing folder: a missing folder is probably a typing error.
-  /// \throws Error (bad_input) where it could not be written
-  void expect_file(const std::filesystem::path& path) const;
-  /// The file of --json, if there is one.
+  /// The files of deliver and those of the parts.
+  /// \throws Error (bad_input) where one could not be written, or two go to one place
+  void expect_results(const std::vector<OutputPart>& parts) const;
+  /// The file of --json alone, in an existing folder: a missing one is probably a typing error.
   /// \throws Error (bad_input)
   void expect_json() const;
-  /// The files of deliver, and the case.
-  void expect_results() const;
-  /// NAME.csv, .gp, .svg and .png, which write_plot writes.
-  void expect_plot(const std::string& name) const;
 
  private:
   const CommonOptions& options_;
@@ -131,21 +154,21 @@ class OutputPlan {
 /// \throws Error (bad_input) where another process has the folder
 [[nodiscard]] std::optional<FolderLock> lock_out(const CommonOptions& options);
 
-/// What a verb writes beside its results: a table, a picture, the case. It fails alone.
-struct OutputPart {
-  enum Place {
-    folder,  ///< --out
-    page,    ///< likewise, and it is drawn again for a page of results in memory: it owns what it refers to
-    file,    ///< that it names itself, also without --out
-  };
-  std::string name;                                      ///< for warnings
-  std::function<void(const CommonOptions& into)> write;  ///< into the folder --out of the options
-  Place place = folder;
-};
-
 /// Does work of a verb. What ends it before its end is returned, so that the verb delivers what it has by then.
 /// \param part of the results that is then missing; empty: the rest of the verb
 std::optional<Error> failure_of(const std::function<void()>& work, const std::string& part = {});
+
+/// What a computation finds; where it ends before its end, what it had found by then.
+/// \param failure set where it ended
+template <class Found, class Work>
+Found found_by(std::optional<Error>& failure, const Work& work) {
+  try {
+    return work();
+  } catch (const ErrorWith<Found>& ended) {
+    failure = ended;
+    return ended.found();
+  }
+}
 
 /// Delivers the results of a verb in the order of their worth: OUT/result.json and --json FILE; the parts, one after
 /// the other; OUT/index.html; the report to stdout, unless quiet, or the JSON where --json is "-". What fails on the
@@ -222,13 +245,6 @@ class SavedOnTheWay {
   const CommonOptions& options_;
   bool failed_ = false;
 };
-
-/// case.toml in --out, if there is one, which reproduces the computation.
-/// \param resolved a Case or the document of another kind of case
-template <typename Resolved>
-void write_case(const CommonOptions& options, const Resolved& resolved) {
-  if (options.out) write_file(*options.out / "case.toml", to_toml(resolved, *options.out), true);
-}
 
 /// \param done "3 of 12 points are done"
 /// \param again how to continue a run with --out, "Run the same command with --resume to do the rest"

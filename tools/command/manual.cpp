@@ -15,6 +15,8 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/results.hpp"
 
+#include "command_texts.hpp"
+
 namespace equidem {
 namespace {
 
@@ -134,7 +136,7 @@ std::string program_page(const Program& program, const CLI::App& app) {
   out += section("Synopsis") + fmt::format("{} {}\n", bold(program.name), escaped(program.usage));
   out += section(fmt::format("{}s", program.noun));
   for (const Verb& verb : program.verbs) out += fmt::format(".TP\n{}\n{}\n", bold(verb.name), escaped(verb.summary));
-  out += section("Options") + options_of(app, false) + footer_sections(program.footer) + section("See also");
+  out += section("Options") + options_of(app, false) + footer_sections(app.get_footer()) + section("See also");
   std::string others;
   for (const Verb& verb : program.verbs)
     others += fmt::format("{}{}", others.empty() ? "" : ",\n", reference(page_name(program, verb.name), 1));
@@ -209,44 +211,8 @@ std::string bash_completion(const Program& program, const CLI::App& app) {
   for (const CaseKey& key : keys)
     if (!key.words.empty()) values += fmt::format("      {}) words='{}' ;;\n", key.path, joined(key.words, " "));
   // bash splits words at '=': the value of a key is the second word after it.
-  return fmt::format(R"(# Completion of {0} for bash, printed by '{0} help completion bash'.
-{1}() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" at=$((COMP_CWORD - 1)) words='' files='' end=''
-  local commands='{2}'
-  local keys='{3}'
-  if [ "$word" = '=' ]; then
-    word=''
-    at=$COMP_CWORD
-  fi
-  if [ "$COMP_CWORD" -eq 1 ]; then
-    words="$commands help --help --version"
-  elif [ "${{COMP_WORDS[at]}}" = '=' ]; then
-    case "${{COMP_WORDS[at - 1]}}" in
-{4}      --*) files=-f ;;
-    esac
-  else
-    case "${{COMP_WORDS[at]}}" in
-{5}    *)
-      case "${{COMP_WORDS[1]}}" in
-{6}        help)
-          case "${{COMP_WORDS[at]}}" in
-            help) words='{7}' ;;
-            man) words="$commands" ;;
-            completion) words=bash ;;
-          esac
-          ;;
-      esac
-      ;;
-    esac
-  fi
-  [ -z "$end" ] || compopt -o nospace
-  [ -z "$files" ] || compopt -o filenames
-  mapfile -t COMPREPLY < <(compgen $files -W "$words" -S "$end" -- "$word")
-}}
-complete -F {1} {0}
-)",
-                     program.name, function, joined(commands, " "), joined(keys, &CaseKey::path, " "), values,
-                     joined(after, ""), options, joined(topics, " "));
+  return fmt::format(completion_bash_in, program.name, function, joined(commands, " "),
+                     joined(keys, &CaseKey::path, " "), values, joined(after, ""), options, joined(topics, " "));
 }
 
 }  // namespace equidem

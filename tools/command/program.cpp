@@ -142,7 +142,11 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
 int run(const Program& program, const std::vector<std::string>& arguments) {
   CLI::App app(program.description, program.name);
   app.formatter(std::make_shared<HelpText>(program));
-  app.footer(program.footer);
+  const auto without_end = [](std::string text) {
+    if (text.ends_with('\n')) text.pop_back();
+    return text;
+  };
+  app.footer(without_end(program.footer));
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   std::vector<Run> runs;
@@ -152,6 +156,7 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   for (const Verb& verb : program.verbs) {
     commands.push_back(app.add_subcommand(verb.name, verb.summary));
     commands.back()->group(group);
+    commands.back()->footer(without_end(verb.footer));
     runs.push_back(verb.declare(*commands.back()));
   }
   std::vector<std::string> names = names_in(program.verbs);

@@ -23,6 +23,7 @@ struct Verb {
   const char* summary;                ///< one line of the help
   Run (*declare)(CLI::App& command);  ///< adds its options to the command line
   bool swept = false;                 ///< gives numbers of a case whose keys a sweep may vary
+  const char* footer = "";            ///< below its options: examples; without its last line break
 };
 
 /// An option or command that is not accepted, with the message for it.

@@ -126,7 +126,6 @@ ReachedAccuracy CaseSearch::reached() const {
           .of = fmt::format("{} (errors fall as {}^-{:.2f})", searched_.of, searched_.refinement.unit, search_.order()),
           .knob = searched_.knob,
           .value = searched_.setting_of(level()),
-          .pilots = {},
           .ten_times_more = {.time_factor = factor,
                              .seconds = factor * seconds_,
                              .value = searched_.setting_of(finer),
@@ -193,11 +192,7 @@ ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double cond
       .estimated = error_bound,
       .of = fmt::format("the answer to this assembly, {}; what the assembly stands for is not judged",
                         condition > 0 ? "bound from the residual and the condition" : "estimated from the iterations"),
-      .knob = {},
-      .value = {},
-      .pilots = {},
-      .pilots_factor = 0,
-      .ten_times_more = {.time_factor = 1, .seconds = seconds, .value = {}, .note = {}}};
+      .ten_times_more = {.seconds = seconds}};
   if (condition == 0) {
     reached.ten_times_more.note = "about two iterations more";
     return reached;

@@ -24,18 +24,18 @@ using AccuracySetting = std::vector<std::pair<std::string, double>>;
 struct ReachedAccuracy {
   double requested = 0;
   double estimated = 0;
-  std::string of;            ///< quantity and source of the errors
-  std::string knob;          ///< name of the chosen setting; empty: no choice
-  AccuracySetting value;     ///< value of the chosen setting
-  std::string pilots;        ///< description of the pilot computations; empty: none
-  double pilots_factor = 0;  ///< their work, times that of what was chosen
+  std::string of;              ///< quantity and source of the errors
+  std::string knob = {};       ///< name of the chosen setting; empty: no choice
+  AccuracySetting value = {};  ///< value of the chosen setting
+  std::string pilots = {};     ///< description of the pilot computations; empty: none
+  double pilots_factor = 0;    ///< their work, times that of what was chosen
   /// The settings and the time of a tenth of the error.
   struct TenTimesMore {
     double time_factor = 1;  ///< times the time of what was chosen
     double seconds = 0;      ///< by that
-    AccuracySetting value;
-    std::string note;  ///< text in its place if no action is necessary or possible; may be empty
-  } ten_times_more;
+    AccuracySetting value = {};
+    std::string note = {};  ///< text in its place if no action is necessary or possible; may be empty
+  } ten_times_more = {};
 };
 
 /// The note where what was chosen is ten times as accurate as asked.

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,6 +31,8 @@
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/solver_choice.hpp"
+
+#include "case_text.hpp"
 
 namespace equidem {
 namespace {
@@ -127,24 +128,19 @@ void add_gaps(Results& results, const GapRange& gaps, bool found) {
 void question_springs(Results& results, double mean_radius, double largest) {
   constexpr double soft = 1e4, large = 0.1;  // Pa, m
   if (!(largest > 0 && largest < soft && mean_radius < large)) return;
-  results.line("", fmt::format("springs of {:.3g} Pa between discs of {:.3g} m are softer than any solid: moduli or "
-                               "springs may be in MPa or GPa where Pa are meant",
-                               largest, mean_radius));
+  results.warning("", fmt::format("springs of {:.3g} Pa between discs of {:.3g} m are softer than any solid: moduli or "
+                                  "springs may be in MPa or GPa where Pa are meant",
+                                  largest, mean_radius));
 }
 
-/// The tables that decide the assembly, as text: all but those that surely do not. Springs move bodies that fall.
-std::string deciding_tables(const Case& resolved) {
+/// The tables that decide the assembly, as text. Springs move bodies that fall.
+std::string tables_of_assembly(const Case& resolved) {
   const auto& packing = resolved.assembly.packing;
-  const bool falls = packing && entry_of(packing->method).open_top;
-  TomlValue document = resolved.document;
-  std::erase_if(document.entries, [&](const TomlEntry& entry) {
-    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
-      return std::ranges::find(names, entry.name) != names.end();
-    };
-    return is_one_of({"title", "viscoelastic", "effects", "solver", "homogenize", "ensemble", "run", "output"}) ||
-           (!falls && is_one_of({"springs", "material"}));
-  });
-  return to_toml(document, {});
+  TomlValue document = deciding_tables(resolved.document, Decided::assembly);
+  if (!packing || !entry_of(packing->method).open_top)
+    std::erase_if(document.entries,
+                  [](const auto& entry) { return entry.name == "springs" || entry.name == "material"; });
+  return to_toml(std::move(document), {});
 }
 
 std::atomic<SharedAssemblies*> shared_assemblies{nullptr};
@@ -160,7 +156,7 @@ SharedAssemblies::~SharedAssemblies() {
 }
 
 Assembly SharedAssemblies::operator()(const Case& resolved) {
-  const std::string tables = deciding_tables(resolved);
+  const std::string tables = tables_of_assembly(resolved);
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = known_.find(tables); found != known_.end()) return found->second;
@@ -402,7 +398,8 @@ Results estimate_results(const SolveEstimate& e, double resident, double drawing
 
 }  // namespace
 
-Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys, const MoreMemory& more) {
+int dry_run(const CommonOptions& given, const Problem& problem, const Results& further, AssemblyKeys keys,
+            const MoreMemory& more) {
   const double resident = resident_memory();
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   EquilibriumOptions options = problem.options();
@@ -431,9 +428,12 @@ Results dry_run_results(const Problem& problem, const Results& further, Assembly
   constexpr double bytes_of_drawn_disc = 80, bytes_of_drawn_contact = 32;
   const double drawing = more.bytes_of_picture + bytes_of_drawn_disc * static_cast<double>(problem.assembly.size()) +
                          bytes_of_drawn_contact * static_cast<double>(problem.assembly.contacts.size());
-  return problem_results(problem, effects, keys)
-      .append(further)
-      .append(estimate_results(estimate, resident, drawing, problem.resolved.solver.memory_limit));
+  deliver(given, "dry_run",
+          problem_results(problem, effects, keys)
+              .append(further)
+              .append(estimate_results(estimate, resident, drawing, problem.resolved.solver.memory_limit)),
+          problem.times);
+  return 0;
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

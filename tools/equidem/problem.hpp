@@ -165,15 +165,16 @@ void add_largest_void(Results& results, const Assembly& assembly);
 
 /// What takes memory beside one solution of K u = f.
 struct MoreMemory {
-  bool of_complex = false;        ///< factors of complex numbers follow, beside that of the others
-  std::optional<double> inertia;  ///< L D L^T decides it, with so many vectors kept beside it
-  double bytes_of_disc = 0;       ///< kept while it solves
-  double bytes_of_picture = 0;    ///< drawn when the solver is there no longer
-  int at_once = 1;                ///< solutions beside each other
+  bool of_complex = false;             ///< factors of complex numbers follow, beside that of the others
+  std::optional<double> inertia = {};  ///< L D L^T decides it, with so many vectors kept beside it
+  double bytes_of_disc = 0;            ///< kept while it solves
+  double bytes_of_picture = 0;         ///< drawn when the solver is there no longer
+  int at_once = 1;                     ///< solutions beside each other
 };
-/// The problem, further results, size, memory and work of a factorization, for --dry-run.
-Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all,
-                        const MoreMemory& more = {});
+/// --dry-run: delivers the problem, further results, size, memory and work of a factorization.
+/// \return the exit code, 0
+int dry_run(const CommonOptions& options, const Problem& problem, const Results& further, AssemblyKeys keys,
+            const MoreMemory& more = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

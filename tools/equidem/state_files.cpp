@@ -66,8 +66,6 @@ std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey) {
           array_of("dispersion/wave_vectors", "1/m", std::move(wave_vectors), 2), std::move(table)};
 }
 
-namespace {
-
 std::vector<std::string> state_names(const OutputCase& wanted, const std::string& suffix) {
   std::vector<std::string> names;
   if (wanted.csv)
@@ -77,12 +75,6 @@ std::vector<std::string> state_names(const OutputCase& wanted, const std::string
   if (wanted.picture)
     for (const char* end : {".svg", ".png"}) names.push_back("picture" + suffix + end);
   return names;
-}
-
-}  // namespace
-
-void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix) {
-  for (const std::string& name : state_names(wanted, suffix)) plan.expect(name);
 }
 
 void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix) {
@@ -109,13 +101,14 @@ void write_state_picture(const CommonOptions& options, const OutputCase& wanted,
   if (wanted.picture) write_picture(*options.out, "picture" + suffix, state, picture, options.overwrite);
 }
 
-void expect_assembly(const OutputPlan& plan, const OutputCase& wanted) {
-  if (wanted.assembly) plan.expect(assembly_file_name("assembly", *wanted.assembly));
-}
-
-void write_assembly(const CommonOptions& options, const OutputCase& wanted, const Assembly& assembly) {
-  if (!wanted.assembly) return;
-  write_assembly(*options.out / assembly_file_name("assembly", *wanted.assembly), assembly, options.overwrite);
+OutputPart assembly_part(const OutputCase& wanted, const std::function<const Assembly&()>& assembly) {
+  OutputPart part{"the assembly", [](const CommonOptions& /*into*/) {}};
+  if (!wanted.assembly) return part;
+  part.files = {assembly_file_name("assembly", *wanted.assembly)};
+  part.write = [=, name = part.files.front()](const CommonOptions& into) {
+    write_assembly(*into.out / name, assembly(), into.overwrite);
+  };
+  return part;
 }
 
 }  // namespace equidem

@@ -4,6 +4,7 @@
 /// The files of one state of an assembly: discsSUFFIX.csv, contactsSUFFIX.csv, stateSUFFIX.vtm, pictureSUFFIX.svg.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -59,8 +60,8 @@ inline OutputCase pictures_of(OutputCase wanted) {
   return wanted;
 }
 
-/// \throws Error (bad_input) where a file could not be written
-void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix);
+/// The names of the files of a state and of its picture.
+std::vector<std::string> state_names(const OutputCase& wanted, const std::string& suffix);
 /// Removes these files of an earlier computation, where the present one has no state to write over them.
 void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix);
 
@@ -75,7 +76,7 @@ void write_state_picture(const CommonOptions& options, const OutputCase& wanted,
                          const AssemblyState& state, const PictureOptions& picture);
 
 /// The assembly itself, where [output] asks for it.
-void expect_assembly(const OutputPlan& plan, const OutputCase& wanted);
-void write_assembly(const CommonOptions& options, const OutputCase& wanted, const Assembly& assembly);
+/// \param assembly returns it when it is written
+OutputPart assembly_part(const OutputCase& wanted, const std::function<const Assembly&()>& assembly);
 
 }  // namespace equidem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The verbs of the program. A verb is one file with one declare function, and one line in the table below. Verbs are
+/// The verbs of the program. A verb is one file with one declare function, its examples in help/, and one line in
+/// the table below. Verbs are
 /// also carried out within another one, as the command line would do it.
 #pragma once
 
@@ -17,6 +18,7 @@
 
 #include "command.hpp"
 #include "program.hpp"
+#include "verb_texts.hpp"
 
 namespace equidem {
 
@@ -57,16 +59,23 @@ Run declare_study(CLI::App& command);
 std::set<std::string> flags_of_verbs();
 
 inline constexpr std::array verbs{
-    Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve, true},
-    Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize, true},
-    Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate, true},
-    Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability, true},
-    Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack, true},
-    Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run, true},
-    Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic, true},
-    Verb{"export", "the model as input of LAMMPS or YADE, or its equations as matrices", declare_export},
-    Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep},
-    Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
+    Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve, true, solve_txt},
+    Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize, true,
+         homogenize_txt},
+    Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate, true,
+         calibrate_txt},
+    Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability, true,
+         stability_txt},
+    Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack, true, pack_txt},
+    Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run, true,
+         run_txt},
+    Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic, true,
+         quasistatic_txt},
+    Verb{"export", "the model as input of LAMMPS or YADE, or its equations as matrices", declare_export, false,
+         export_txt},
+    Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep, false, sweep_txt},
+    Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study,
+         false, study_txt},
 };
 
 }  // namespace equidem

@@ -3,38 +3,99 @@
 /// equidem-mpi: statics on several processes, by PETSc.
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <iterator>
+#include <new>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include <petscsys.h>
+#include <unistd.h>
 
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/output/quantities.hpp"
 
+#include "mpi_texts.hpp"
+#include "parallel_verbs.hpp"
 #include "petsc/solver.hpp"
-#include "rank_program.hpp"
 
+namespace equidem {
 namespace {
 
-constexpr const char* footer = R"(Examples:
-  mpirun -n 2 equidem-mpi solve data/cases/abe1996_fig6.toml
-  mpirun -n 4 equidem-mpi solve block.toml --out result -equidem_ksp_monitor
-  mpirun -n 4 equidem-mpi homogenize cell.toml -equidem_pc_type hypre
-  mpirun -n 2 equidem-mpi solve block.toml --set solver.method=multifrontal      by MUMPS
+int terminal = STDERR_FILENO;  // of all ranks
 
-Words that begin with one dash are options of PETSc, with the words that follow them. -equidem_ begins the names of
-those of the solver (-equidem_ksp_rtol, -equidem_pc_type, ...); -log_view measures. Options that PETSc does not use are
-named at the end.
+/// Whether all ranks come to the end of the verb within some seconds.
+bool all_arrive() {
+  constexpr double patience = 10;  // s
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibarrier(PETSC_COMM_WORLD, &request);
+  const auto start = std::chrono::steady_clock::now();
+  for (;;) {
+    int arrived = 0;
+    MPI_Test(&request, &arrived, MPI_STATUS_IGNORE);
+    if (arrived != 0) return true;
+    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > patience) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
 
-Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted. Where a
-rank dies, mpirun says so and ends the others, and its exit code is not 0.)";
+[[noreturn]] void end_all(const std::string& sentence, int exit_code) {
+  const std::string line = fmt::format("equidem-mpi: {}\n", sentence);
+  static_cast<void>(!write(terminal, line.data(), line.size()));
+  MPI_Abort(PETSC_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
+}
+
+/// From here on only rank 0 writes to stdout and stderr.
+void silence_other_ranks() {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0) return;
+  terminal = dup(STDERR_FILENO);
+  for (std::FILE* stream : {stdout, stderr}) static_cast<void>(!std::freopen("/dev/null", "w", stream));
+}
+
+}  // namespace
+
+Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
+  return [verb] {
+    const petsc::Ranks ranks(PETSC_COMM_WORLD);
+    const auto unless_alone = [&](const std::string& sentence, int exit_code) {
+      if (!all_arrive()) end_all(sentence, exit_code);
+    };
+    try {
+      verb(ranks);
+    } catch (const Error& error) {
+      unless_alone(error.what(), error.exit_code());
+      throw;
+    } catch (const std::bad_alloc&) {
+      unless_alone(fmt::format("there is too little memory on rank {}.", ranks.rank()), 1);
+      throw;
+    } catch (const std::exception& error) {
+      unless_alone(fmt::format("this is a defect of equidem: {}. Please report it.", error.what()), 1);
+      throw;
+    }
+    // The others may have failed: they wait in the same barrier.
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibarrier(PETSC_COMM_WORLD, &request);
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
+    return 0;
+  };
+}
+
+}  // namespace equidem
+
+namespace {
 
 /// The words of the command line for equidem and for PETSc: a word with one dash and a letter begins an option of
 /// PETSc, one with two dashes an option of equidem; others belong to the option before them.
@@ -85,7 +146,7 @@ int main(int argc, char** argv) {
       .description = "equidem-mpi: equilibrium and moduli of large assemblies of discs, on several processes by PETSc",
       .noun = "verb",
       .usage = "VERB CASE.toml [OPTIONS] [OPTIONS OF PETSC]",
-      .footer = footer,
+      .footer = equidem_mpi_txt,
       .verbs = parallel_verbs,
       .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page, describe_case_table},
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result}},

@@ -209,17 +209,7 @@ ScalarNumber number_of_column(std::string_view column) {
 }
 
 std::string describe_result() {
-  std::string text =
-      "result.json, and the output of --json, is one object. Each number has its unit in the object \"units\" and its\n"
-      "meaning in the object \"labels\" under its own name: the keys that lead to it, joined by points, without the\n"
-      "positions in lists, as \"poisson_ratio.plane_strain\" or \"points.energy\". An empty unit is that of a count, "
-      "a\n"
-      "ratio or a strain. Columns of the table of 'equidem sweep' have the same names, with the unit at their end.\n"
-      "null stands for a number that is not known.\n\n"
-      "status     state of the result: solved, unstable, done, calibrated, ...\n"
-      "report     text that is printed without --json\n"
-      "version    of the program\n\n"
-      "Names of numbers, which may stand below those of other objects, units and meanings:\n\n";
+  std::string text = result_txt;
   for (const ResultQuantity& quantity : result_quantities())
     text += fmt::format("  {:<36} {:<6} {}\n", with_points(quantity.path), quantity.unit, quantity.label);
   return text;

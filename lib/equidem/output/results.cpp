@@ -225,17 +225,21 @@ Results& Results::add(std::string key, std::string label, ResultValue value, std
 }
 
 Results& Results::set(std::string key, ResultValue value, std::string unit, std::string label) {
-  parts_.push_back({.key = std::move(key),
-                    .label = std::move(label),
-                    .unit = std::move(unit),
-                    .value = std::move(value),
-                    .hidden = true});
+  add(std::move(key), std::move(label), std::move(value), std::move(unit));
+  parts_.back().hidden = true;
   return *this;
 }
 
 Results& Results::line(std::string name, const std::string& text) {
   parts_.push_back({.part = Result::Part::line, .label = std::move(name)});
   return text.empty() ? *this : note(text);
+}
+
+Results& Results::warn(std::string heading) {
+  auto part = parts_.rbegin();
+  while (part->part != Result::Part::line && part->part != Result::Part::block) ++part;
+  part->warning = std::move(heading);
+  return *this;
 }
 
 Results& Results::note(std::string text) {

@@ -105,6 +105,9 @@ struct Result {
   ResultValue value = nullptr;
   Shown shown = {};
   bool hidden = false;  ///< left out of the report
+  /// Its line, or its block, is a warning. Where warnings stand alone this text takes the place of the name of the
+  /// line, if it is not empty.
+  std::optional<std::string> warning = {};
 };
 
 /// An ordered list of results. Values that are added stand on the last line of the report, with commas between them, as
@@ -117,6 +120,11 @@ class Results {
   Results& set(std::string key, ResultValue value, std::string unit = {}, std::string label = {});
   /// Begins a line of the report. \param name its first column; empty: the line continues the one above
   Results& line(std::string name, const std::string& text = {});
+  /// A line that the reader must not miss.
+  Results& warning(std::string name, const std::string& text) { return line(std::move(name), text).warn(); }
+  /// The last line or block of the report, of which there is one, is such a line.
+  /// \param heading in place of the name of the line where warnings stand alone
+  Results& warn(std::string heading = {});
   /// Text of the report that follows on the line, as it is.
   Results& note(std::string text);
   /// Lines of the report as they are.

@@ -35,17 +35,21 @@ Vec2 row_of(const Floats& rows, py::ssize_t k) {
   return {rows.at(k, 0), rows.at(k, 1)};
 }
 
-Shared from_arrays(const Floats& centres, const Floats& radii, const std::optional<Integers>& contacts,
-                   const std::optional<Floats>& levers, const std::optional<std::pair<double, double>>& period,
-                   double gap_tolerance) {
-  if (centres.shape(0) == 0) bad_input("there are no discs", "an assembly has at least one", "Give their centres");
+using Period = std::optional<std::pair<double, double>>;
+
+Assembly discs_at(const char* kind, const Floats& centres, const Floats& radii, const Period& period) {
   Assembly assembly;
-  assembly.kind = "arrays";
+  assembly.kind = kind;
   if (period) assembly.period = Vec2{period->first, period->second};
-  for (py::ssize_t d = 0; d < centres.shape(0); ++d) {
-    assembly.centres.push_back(row_of(centres, d));
-    assembly.radii.push_back(radii.at(d));
-  }
+  for (py::ssize_t d = 0; d < centres.shape(0); ++d) assembly.centres.push_back(row_of(centres, d));
+  assembly.radii.assign(radii.data(), radii.data() + radii.size());
+  return assembly;
+}
+
+Shared from_arrays(const Floats& centres, const Floats& radii, const std::optional<Integers>& contacts,
+                   const std::optional<Floats>& levers, const Period& period, double gap_tolerance) {
+  if (centres.shape(0) == 0) bad_input("there are no discs", "an assembly has at least one", "Give their centres");
+  Assembly assembly = discs_at("arrays", centres, radii, period);
   for (py::ssize_t c = 0; contacts && c < contacts->shape(0); ++c) {
     const bool shifted = contacts->shape(1) == 4;
     assembly.contacts.push_back({.i = contacts->at(c, 0),
@@ -78,15 +82,8 @@ Shared from_arrays(const Floats& centres, const Floats& radii, const std::option
 }
 
 /// Discs whose contacts are the edges of their triangulation.
-Shared triangulated(const Floats& centres, const Floats& radii,
-                    const std::optional<std::pair<double, double>>& period) {
-  Assembly assembly;
-  assembly.kind = "delaunay";
-  if (period) assembly.period = Vec2{period->first, period->second};
-  for (py::ssize_t d = 0; d < centres.shape(0); ++d) {
-    assembly.centres.push_back(row_of(centres, d));
-    assembly.radii.push_back(radii.at(d));
-  }
+Shared triangulated(const Floats& centres, const Floats& radii, const Period& period) {
+  Assembly assembly = discs_at("delaunay", centres, radii, period);
   return without_lock([&] {
     triangulate(assembly);
     check(assembly);
@@ -209,7 +206,7 @@ void bind_assembly(py::module_& module) {
       .def_property_readonly("levers", [](const Shared& a) { return columns_of(a, a->contacts, &Contact::lever_i, 2); })
       .def_property_readonly("normals", normals_of)
       .def_property_readonly("period",
-                             [](const Assembly& a) -> std::optional<std::pair<double, double>> {
+                             [](const Assembly& a) -> Period {
                                if (!a.period) return {};
                                return std::pair(a.period->x, a.period->y);
                              })
@@ -233,8 +230,7 @@ void bind_assembly(py::module_& module) {
   });
   module.def("read_assembly", [](const std::filesystem::path& path, double gap_tolerance, std::string unit_of_length,
                                  std::optional<std::int64_t> frame, std::optional<std::filesystem::path> contacts,
-                                 std::optional<bool> periodic_box, std::optional<std::pair<double, double>> period,
-                                 const std::string& plane) {
+                                 std::optional<bool> periodic_box, const Period& period, const std::string& plane) {
     const AssemblyFileOptions options{
         .gap_tolerance = gap_tolerance,
         .unit_of_length = std::move(unit_of_length),

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <string>
 
+#include "equidem/core/error.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/output/results.hpp"
 
@@ -13,6 +14,28 @@ namespace {
 bool on_main_thread() {
   const py::module_ threading = py::module_::import("threading");
   return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
+
+const char* class_of(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::computation_failed:
+      return "ComputationFailed";
+    case ErrorKind::bad_input:
+      return "BadInput";
+    case ErrorKind::interrupted:
+      return "Interrupted";
+  }
+  return "";
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const Error& error) {
+    const py::object type = py::module_::import("equidem.errors").attr(class_of(error.kind()));
+    const py::object made = type(error.problem(), error.why(), error.remedy(), error.where());
+    PyErr_SetObject(type.ptr(), made.ptr());
+  }
 }
 
 std::atomic<bool> progress_is_wanted{true};
@@ -59,11 +82,8 @@ PYBIND11_MODULE(_core, module) {
       }
     });
   });
-  translate_errors();
+  py::register_exception_translator(translate);
   bind_assembly(module);
-  bind_collisions(module);
-  bind_springs(module);
-  bind_factor(module);
-  bind_simulation(module);
-  bind_verbs(module);
+  bind_contacts(module);
+  bind_cases(module);
 }

@@ -22,14 +22,9 @@ inline py::custom_type_setup made_here() {
       [](PyHeapTypeObject* type) { type->ht_type.tp_flags |= Py_TPFLAGS_DISALLOW_INSTANTIATION; });
 }
 
-/// Errors of the library become exceptions of equidem.errors.
-void translate_errors();
 void bind_assembly(py::module_& module);
-void bind_collisions(py::module_& module);
-void bind_springs(py::module_& module);
-void bind_factor(py::module_& module);
-void bind_simulation(py::module_& module);
-void bind_verbs(py::module_& module);
+void bind_contacts(py::module_& module);
+void bind_cases(py::module_& module);
 
 using Floats = py::array_t<double, py::array::c_style>;
 using Integers = py::array_t<std::int32_t, py::array::c_style>;

@@ -35,14 +35,14 @@ namespace {
 /// The files that a format makes of a case. It owns what its functions refer to.
 struct Exported {
   StageTimes times = {};
-  std::function<void(const CommonOptions&)> write_case = {};
-  Results results = {};  ///< lines of the report
   std::vector<OutputPart> files = {};
+  Results results = {};      ///< lines of the report
   double bytes_of_text = 0;  ///< the largest text that is made when its file is written
 
   /// \param text is made when the file is written
   void add(const std::string& name, std::function<std::string()> text) {
-    files.push_back({name, [=](const CommonOptions& into) { write_file(*into.out / name, text(), into.overwrite); }});
+    const auto write = [=](const CommonOptions& into) { write_file(*into.out / name, text(), into.overwrite); };
+    files.push_back({name, write, OutputPart::folder, {name}});
   }
 };
 
@@ -75,14 +75,7 @@ Scene scene_at_rest(const Problem& problem) {
   const double density = disc_density(problem.resolved, problem.assembly).value_or(usual_density);
   Scene scene(problem.assembly, problem.springs.springs,
               inertia_of(problem.assembly, density, problem.resolved.assembly.body));
-  const auto constant = [](const std::optional<double>& value) -> std::optional<Schedule> {
-    if (!value) return {};
-    return Schedule{.value = *value};
-  };
-  for (const Support& support : problem.supports)
-    scene.supports.push_back({support.group, constant(support.ux), constant(support.uy), constant(support.rotation)});
-  for (const Load& load : problem.load_cases.front().loads)
-    scene.loads.push_back({.load = load, .factor = {.value = 1}});
+  add_constant_actions(scene, problem.supports, problem.load_cases.front().loads);
   return scene;
 }
 
@@ -103,7 +96,7 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
       run ? build_scene(resolved, problem->assembly, problem->springs.springs) : scene_at_rest(*problem);
   SimulationOptions settings = run ? simulation_options(resolved, 1) : SimulationOptions{.rotation = resolved.rotation};
   CaseModel made{engine_model(scene, settings, resolved.assembly.body),
-                 {problem->times, [problem](const CommonOptions& into) { write_case(into, problem->resolved); }}};
+                 {problem->times, {case_part([problem]() -> const Case& { return problem->resolved; })}}};
   EngineModel& model = made.model;
   model.title = resolved.title;
   model.to_rest = !run || run->until_rest;
@@ -136,7 +129,7 @@ CaseModel grain_model(const ExportOptions& options, Engine engine) {
   const double step = choose_grain_step(*resolved).step;
   const GrainScene scene = build_grain_scene(*resolved, step);
   CaseModel made{engine_model(scene, grain_options(*resolved, step), resolved->body),
-                 {{}, [resolved](const CommonOptions& into) { write_case(into, resolved->document); }}};
+                 {{}, {case_part([resolved]() -> const TomlValue& { return resolved->document; })}}};
   made.model.title = resolved->title;
   made.model.duration = resolved->duration;
   finish(made.model, engine, options, resolved->document.where(), [&] { return step; });
@@ -256,7 +249,7 @@ Exported export_to_matrix_market(const ExportOptions& options) {
   const auto problem =
       std::make_shared<const Problem>(loaded ? build_problem(std::move(resolved)) : problem_of(std::move(resolved)));
   refuse_prestress(*problem, "export --to matrix-market");
-  Exported made{problem->times, [problem](const CommonOptions& into) { write_case(into, problem->resolved); }};
+  Exported made{problem->times, {case_part([problem]() -> const Case& { return problem->resolved; })}};
   Stopwatch watch;
   const auto system = std::make_shared<const LinearSystem>(equations_of(*problem));
   made.times.add("assemble", watch.lap());
@@ -300,13 +293,13 @@ int export_case(const ExportOptions& options) {
   const ExportFormat& format = entry_named(export_formats, options.to, "format of --to");
   if (!options.out && !options.dry_run)
     bad_input("export without --out", "its files need a folder", "Name one: --out DIR");
-  const OutputPlan plan(options);
-  plan.expect_results();
+  OutputPlan(options).expect_results({});
   const auto lock = lock_out(options);
   Exported made = format.make(options);
-  for (const OutputPart& file : made.files) plan.expect(file.name);
-  made.results.line("files", joined(made.files, &OutputPart::name)).set("format", format.name);
-  made.files.insert(made.files.begin(), {"case.toml", made.write_case});
+  OutputPlan(options).expect_results(made.files);
+  const std::vector others(made.files.begin() + 1, made.files.end());  // but the case
+  made.results.line("files", joined(others, &OutputPart::name));
+  made.results.set("format", format.name);
   if (options.dry_run) {
     made.results.line("memory").add("peak_bytes", "",
                                     std::max(peak_resident_memory(), resident_memory() + made.bytes_of_text),
@@ -331,12 +324,6 @@ Run declare_export(CLI::App& command) {
                               joined(acceptable_features(), ", ")))
       ->type_name("WHAT")
       ->allow_extra_args(false);
-  command.footer(
-      "Examples:\n"
-      "  equidem export data/cases/abe1996_fig6.toml --to lammps --out tension      then lmp -in in.equidem\n"
-      "  equidem export data/cases/delaunay_tension.toml --to yade --out tension    then yade run_equidem.py\n"
-      "  equidem export data/cases/grains_cradle.toml --set collisions.law=linear_dashpot --to yade --out cradle\n"
-      "  equidem export data/cases/cantilever.toml --to matrix-market --out beam");
   return [options] { return export_case(*options); };
 }
 

@@ -492,7 +492,7 @@ Results memory_of_cells(const Case& resolved, const std::vector<EnsembleSetting>
                                       "at the peak, of the cells computed at once", {Shown::bytes});
 }
 
-int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
+int dry_run_ensemble(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
   const BuiltSprings springs = build_springs(resolved, first_cell(resolved, plan.discs.front(), plan.first_seed));
   const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
   std::vector<std::int64_t> unknowns;
@@ -522,13 +522,6 @@ HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::u
   return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));
 }
 
-void check_ensemble_outputs(const CommonOptions& options, bool resume = false) {
-  const OutputPlan plan(options, resume);
-  plan.expect_results();
-  for (const char* name : {"samples.csv", statistics_name}) plan.expect(name);
-  for (const char* name : ensemble_plot_names) plan.expect_plot(name);
-}
-
 /// Title, cells, springs and effects; those of the first cell stand for all.
 /// \param plan what is sampled, in words; empty: left out
 Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan = {}) {
@@ -547,23 +540,38 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
   return results;
 }
 
-/// Writes samples, statistics and plots into --out, and delivers the results.
-/// \param save_samples writes the table of the samples
-void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results, StageTimes times,
-                      const std::function<void()>& save_samples, const std::optional<Error>& failure) {
-  const bool complete = !failure || failure->kind() != ErrorKind::interrupted;
-  results.set("complete", complete);
-  std::vector<OutputPart> parts{{"samples.csv", [&](const CommonOptions& /*into*/) { save_samples(); }}};
-  if (complete) {
-    parts.push_back({statistics_name, [&](const CommonOptions& into) {
-                       write_csv(*into.out / statistics_name, statistics_table(result.statistics), true);
-                     }});
-    for (const auto& [name, plot] : ensemble_plots(result)) {
-      const auto draw = [name, plot](const CommonOptions& into) { write_plot(*into.out, name, plot, true); };
-      parts.push_back({name, draw, OutputPart::page});
-    }
+/// Samples, statistics and plots; the latter where the sampling came to its end.
+struct EnsembleOutput {
+  std::optional<EnsembleResult> result = {};
+  std::function<void()> save_samples = {};  ///< writes the table of the samples
+  std::optional<Error> failure = {};
+  std::vector<std::pair<std::string, Plot>> plots = {};
+
+  [[nodiscard]] bool complete() const { return !failure || failure->kind() != ErrorKind::interrupted; }
+};
+
+std::vector<OutputPart> output_parts(const std::shared_ptr<const EnsembleOutput>& made) {
+  const auto save = [=](const CommonOptions& /*into*/) { made->save_samples(); };
+  const auto write_statistics = [=](const CommonOptions& into) {
+    if (made->complete()) write_csv(*into.out / statistics_name, statistics_table(made->result->statistics), true);
+  };
+  std::vector<OutputPart> parts{{"samples.csv", save, OutputPart::folder, {"samples.csv", "case.toml"}},
+                                {statistics_name, write_statistics, OutputPart::folder, {statistics_name}}};
+  for (const char* name : ensemble_plot_names) {
+    const auto draw = [=](const CommonOptions& into) {
+      for (const auto& [own, plot] : made->plots)
+        if (own == name) write_plot(*into.out, own, plot, true);
+    };
+    parts.push_back({name, draw, OutputPart::page, plot_files(name)});
   }
-  deliver(options, "done", std::move(results), std::move(times), parts, failure);
+  return parts;
+}
+
+void deliver_ensemble(const CommonOptions& options, const std::vector<OutputPart>& parts, EnsembleOutput& made,
+                      Results results, StageTimes times) {
+  if (made.complete()) made.plots = ensemble_plots(*made.result);
+  results.set("complete", made.complete());
+  deliver(options, "done", std::move(results), std::move(times), parts, made.failure);
 }
 
 /// Fewer bodies jam earlier, so that many of their cells could not be packed.
@@ -589,9 +597,7 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
           "{:.4g} % confidence, scatter and drift together",
           sampled.chosen.samples, sampled.chosen.discs, 100 * wanted.confidence),
       .knob = "size and number of cells",
-      .value = setting_of(sampled.chosen),
-      .pilots = {},
-      .ten_times_more = {}};
+      .value = setting_of(sampled.chosen)};
   std::vector<std::string> pilots;
   for (const std::int64_t discs : sampled.plan.discs) {
     if (discs == sampled.chosen.discs) continue;
@@ -615,15 +621,17 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
 
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
-  EnsembleResult result{
-      .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}};
+  const auto made = std::make_shared<EnsembleOutput>();
+  EnsembleResult& result = made->result.emplace(EnsembleResult{
+      .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}});
   result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
   Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan));
   OutputPlan(options).expect_json();
-  if (options.dry_run) return dry_run(options, resolved, plan, std::move(results));
+  if (options.dry_run) return dry_run_ensemble(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
-  check_ensemble_outputs(options, resume);
+  const std::vector<OutputPart> parts = output_parts(made);
+  OutputPlan(options, resume).expect_results(parts);
   const auto lock = lock_out(options);
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
 
@@ -645,8 +653,9 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   results.append(ensemble_results(result));
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
   if (sampled.stopped)
-    results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted));
-  const std::optional<Error> failure = failure_of([&] {
+    results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted)).warn();
+  made->save_samples = [&] { save(result.samples); };
+  made->failure = failure_of([&] {
     if (sampled.stopped)
       throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
                     "Run the same command with --resume to do the rest");
@@ -654,8 +663,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       computation_failed("none of the cells has moduli",
                          "the first: " + without_full_stop(result.samples.front().refusal), "");
   });
-  deliver_ensemble(
-      options, result, std::move(results), std::move(times), [&] { save(result.samples); }, failure);
+  deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
   return 0;
 }
 
@@ -666,7 +674,9 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                  fmt::format("Set {}", joins_sides(resolved.assembly)));
   }
   OutputPlan(options).expect_json();
-  if (!options.dry_run) check_ensemble_outputs(options);
+  const auto made = std::make_shared<EnsembleOutput>();
+  const std::vector<OutputPart> parts = output_parts(made);
+  if (!options.dry_run) OutputPlan(options).expect_results(parts);
   const auto lock = lock_out(options);
   EnsembleAccuracy wanted{.accuracy = accuracy, .first_seed = resolved.assembly.seed()};
   if (resolved.assembly.packing) wanted.smallest = smallest_packing;
@@ -694,17 +704,18 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
       sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
                          wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
-  std::optional<Error> failure = sampled.failure;
+  made->failure = sampled.failure;
   if (sampled.stopped)
-    failure = Error(
+    made->failure = Error(
         ErrorKind::interrupted, "stopped as asked",
         fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
   const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
-  EnsembleResult result{.title = resolved.title,
-                        .plan = sampled.plan,
-                        .accuracy = accuracy,
-                        .samples = std::move(sampled.samples),
-                        .statistics = std::move(sampled.statistics)};
+  const EnsembleResult& result = made->result.emplace(EnsembleResult{.title = resolved.title,
+                                                                     .plan = sampled.plan,
+                                                                     .accuracy = accuracy,
+                                                                     .samples = std::move(sampled.samples),
+                                                                     .statistics = std::move(sampled.statistics)});
+  made->save_samples = [&] { save(result.samples); };
   if (folder) {
     CommonOptions chosen = options;
     chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}}}", sampled.chosen.discs,
@@ -712,9 +723,8 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
     write_case(options, read_case(chosen));
   }
   results.append(ensemble_results(result));
-  if (sampled.estimated > 0 || !failure) results.append(accuracy_results(reached));
-  deliver_ensemble(
-      options, result, std::move(results), std::move(times), [&] { save(result.samples); }, failure);
+  if (sampled.estimated > 0 || !made->failure) results.append(accuracy_results(reached));
+  deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
   return 0;
 }
 

@@ -37,26 +37,22 @@ constexpr const char* moduli_over_frequency = "moduli_over_frequency";
 
 using Modulus = std::complex<double> HarmonicModuli::*;
 
-/// A complex modulus with its names in the JSON, the table and the report; without a unit a ratio.
+/// A complex modulus with its key in the JSON, which names its column too, and its name in the report; without a unit a
+/// ratio.
 struct ModulusName {
   const char* key;
-  const char* column;
   const char* symbol;
   const char* unit;
   Modulus value;
   bool shown;  ///< in the report
 };
 constexpr std::array modulus_names{
-    ModulusName{"bulk_modulus_2d", "bulk_modulus_2d", "K", "Pa", &HarmonicModuli::bulk_modulus_2d, true},
-    ModulusName{"shear_modulus", "shear_modulus", "G", "Pa", &HarmonicModuli::shear_modulus, true},
-    ModulusName{"poisson_ratio/plane_strain", "poisson_ratio_plane_strain", "nu", "", &HarmonicModuli::poisson_strain,
-                true},
-    ModulusName{"poisson_ratio/plane_stress", "poisson_ratio_plane_stress", "nu", "", &HarmonicModuli::poisson_stress,
-                false},
-    ModulusName{"young_modulus/plane_strain", "young_modulus_plane_strain", "E", "Pa", &HarmonicModuli::young_strain,
-                false},
-    ModulusName{"young_modulus/plane_stress", "young_modulus_plane_stress", "E", "Pa", &HarmonicModuli::young_stress,
-                false}};
+    ModulusName{"bulk_modulus_2d", "K", "Pa", &HarmonicModuli::bulk_modulus_2d, true},
+    ModulusName{"shear_modulus", "G", "Pa", &HarmonicModuli::shear_modulus, true},
+    ModulusName{"poisson_ratio/plane_strain", "nu", "", &HarmonicModuli::poisson_strain, true},
+    ModulusName{"poisson_ratio/plane_stress", "nu", "", &HarmonicModuli::poisson_stress, false},
+    ModulusName{"young_modulus/plane_strain", "E", "Pa", &HarmonicModuli::young_strain, false},
+    ModulusName{"young_modulus/plane_stress", "E", "Pa", &HarmonicModuli::young_stress, false}};
 
 Results frequency_row(const HarmonicStiffness& one) {
   const HarmonicModuli moduli = harmonic_moduli(one);
@@ -120,10 +116,12 @@ Table viscoelastic_table(const ViscoelasticStiffness& result) {
   table.add("omega_rad_per_s", rows, [](const HarmonicStiffness& one) { return 2 * std::numbers::pi * one.frequency; });
   for (const ModulusName& name : modulus_names) {
     const std::string unit = *name.unit == '\0' ? "" : fmt::format("_{}", name.unit);
+    std::string column = name.key;
+    std::ranges::replace(column, '/', '_');
     const auto value = [&](const HarmonicStiffness& one) { return harmonic_moduli(one).*name.value; };
-    table.add(fmt::format("{}_storage{}", name.column, unit), rows,
+    table.add(fmt::format("{}_storage{}", column, unit), rows,
               [&](const HarmonicStiffness& one) { return value(one).real(); });
-    table.add(fmt::format("{}_loss{}", name.column, unit), rows,
+    table.add(fmt::format("{}_loss{}", column, unit), rows,
               [&](const HarmonicStiffness& one) { return value(one).imag(); });
   }
   table.add("error_bound_Pa", rows, &HarmonicStiffness::error_bound);
@@ -233,6 +231,7 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
                                 r.self_stresses == 0 ? "statically determinate, forces do not depend on the springs"
                                                      : "so many springs more than rigidity needs"));
   }
+  const std::size_t unstable = r.unstable_modes > 0 ? lines.size() : SIZE_MAX;
   if (r.unstable_modes > 0) {
     lines.push_back(fmt::format("UNSTABLE: {} by which the network would give way; this stiffness is no state of rest",
                                 counted(r.unstable_modes, "mode")));
@@ -243,7 +242,10 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
   } else if (r.unstable_modes < 0) {
     lines.push_back(fmt::format("stability {}", stability_not_known));
   }
-  for (const std::string& text : lines) out.line(&text == lines.data() ? "rigidity" : "", text);
+  for (const std::string& text : lines) {
+    out.line(&text == lines.data() ? "rigidity" : "", text);
+    if (&text == lines.data() + unstable) out.warn();
+  }
   out.set("rattlers", r.rattlers)
       .set("discs_removed", r.discs_removed)
       .set("left_out", r.removed)
@@ -356,6 +358,7 @@ void add_order(Results& out, const BoundedStiffness& h, const ContactSprings& sp
     out.line("order",
              fmt::format("{} as quadratic forms: {}; least eigenvalues of the differences over the larger: {}",
                          joined(names, " <= "), holds ? "holds" : "BROKEN, do not trust this result", joined(margins)));
+    if (!holds) out.warn();
     out.line("", "K and G lie between their bounds; nu, a ratio of both, need not");
   } else if (springs.any_negative()) {
     out.line("order", "kT < 0: energies are no minima, and nothing above is a bound");
@@ -477,18 +480,6 @@ struct WrittenState {
 constexpr std::array written_states{WrittenState{"_strain_xx", "strain xx"}, WrittenState{"_strain_yy", "strain yy"},
                                     WrittenState{"_strain_xy", "shear strain"}};
 
-void check_outputs(const CommonOptions& options, const Case& resolved) {
-  const OutputPlan plan(options);
-  const OutputCase& wanted = resolved.output;
-  plan.expect_results();
-  if (resolved.viscoelastic) {
-    plan.expect(viscoelastic_table_name);
-    plan.expect_plot(moduli_over_frequency);
-  }
-  expect_assembly(plan, wanted);
-  for (const WrittenState& state : written_states) expect_state(plan, wanted, state.suffix);
-}
-
 BoundsOptions bounds_options(const Case& resolved) {
   BoundsOptions options = resolved.homogenize;
   options.rotation = resolved.rotation;
@@ -505,12 +496,9 @@ std::optional<RelationBeside> relation_of(const Problem& problem) {
 BoundedStiffness homogenize(const Problem& problem, std::optional<Error>& failure) {
   const Case& resolved = problem.resolved;
   return casefile::with_place(resolved.homogenize.boundary ? resolved.where("homogenize.boundary") : "", [&] {
-    try {
+    return found_by<BoundedStiffness>(failure, [&] {
       return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
-    } catch (const ErrorWith<BoundedStiffness>& ended) {
-      failure = ended;
-      return ended.found();
-    }
+    });
   });
 }
 
@@ -547,6 +535,35 @@ struct Harmonic {
   Viscoelasticity springs;
   ViscoelasticStiffness stiffness;
 };
+
+/// What the verb finds.
+struct Homogenized {
+  std::optional<Problem> problem = {};
+  BoundedStiffness stiffness = {};
+  std::optional<Harmonic> harmonic = {};
+};
+
+std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Homogenized>& found) {
+  std::vector<OutputPart> parts{case_part([=]() -> const Case& { return found->problem->resolved; })};
+  if (resolved.viscoelastic) {
+    const auto write = [=](const CommonOptions& into) {
+      if (!found->harmonic) return;
+      const ViscoelasticStiffness& stiffness = found->harmonic->stiffness;
+      write_csv(*into.out / viscoelastic_table_name, viscoelastic_table(stiffness), true);
+      write_plot(*into.out, moduli_over_frequency, viscoelastic_plot(found->problem->resolved.title, stiffness), true);
+    };
+    parts.push_back({viscoelastic_table_name, write, OutputPart::page, plot_files(moduli_over_frequency)});
+    parts.back().files.insert(parts.back().files.begin(), viscoelastic_table_name);
+  }
+  parts.push_back(assembly_part(resolved.output, [=]() -> const Assembly& { return found->problem->assembly; }));
+  const auto write_all = [=](const CommonOptions& into) {
+    write_states(into, *found->problem, found->stiffness.result);
+  };
+  parts.push_back({"the states", write_all, OutputPart::page});
+  for (const WrittenState& state : written_states)
+    std::ranges::move(state_names(resolved.output, state.suffix), std::back_inserter(parts.back().files));
+  return parts;
+}
 
 /// \param failure set where there are none or not all of them
 std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary, std::optional<Error>& failure) {
@@ -604,15 +621,10 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
     add_solver_of_complex(results, problem.resolved.solver);
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
-  deliver(
-      options, "dry_run",
-      dry_run_results(problem, results, AssemblyKeys::all,
-                      {.of_complex = problem.resolved.viscoelastic.has_value(),
-                       .inertia = {},
-                       .bytes_of_disc = boundaries.size() > 1 ? bytes_beside_others : 0,
-                       .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)}),
-      problem.times);
-  return 0;
+  return dry_run(options, problem, results, AssemblyKeys::all,
+                 {.of_complex = problem.resolved.viscoelastic.has_value(),
+                  .bytes_of_disc = boundaries.size() > 1 ? bytes_beside_others : 0,
+                  .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
 int homogenize(const HomogenizeVerb& options) {
@@ -627,58 +639,43 @@ int homogenize(const HomogenizeVerb& options) {
   if (resolved.ensemble) return homogenize_ensemble(options, resolved, options.resume);
   if (options.resume)
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
-  check_outputs(options, resolved);
+  const auto found = std::make_shared<Homogenized>();
+  const std::vector<OutputPart> parts = output_parts(resolved, found);
+  OutputPlan(options).expect_results(parts);
   const auto lock = lock_out(options);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
-  const auto shared_problem = std::make_shared<const Problem>(prestressed(problem_of(std::move(resolved))));
-  const Problem& problem = *shared_problem;
+  const Problem& problem = found->problem.emplace(prestressed(problem_of(std::move(resolved))));
   if (options.dry_run) return dry_run_homogenization(options, problem, options.accuracy);
 
   std::optional<Error> failure;
-  const auto shared_stiffness = std::make_shared<const BoundedStiffness>(homogenize(problem, failure));
-  const BoundedStiffness& homogenized = *shared_stiffness;
-  const EffectiveStiffness& result = homogenized.result;
-  const auto harmonic = std::make_shared<const std::optional<Harmonic>>(harmonic_of(problem, result.boundary, failure));
+  found->stiffness = homogenize(problem, failure);
+  const EffectiveStiffness& result = found->stiffness.result;
+  found->harmonic = harmonic_of(problem, result.boundary, failure);
+  const std::optional<Harmonic>& harmonic = found->harmonic;
   const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
   times.add(result.times);
-  if (*harmonic) times.add((*harmonic)->stiffness.times);
+  if (harmonic) times.add(harmonic->stiffness.times);
   Results results = homogenized_results(problem, problem_results(problem, result.effects), problem.assembly.periodic(),
-                                        homogenized, fabric(problem.assembly), relation_of(problem));
+                                        found->stiffness, fabric(problem.assembly), relation_of(problem));
   results.set("strain_of_states", written_strain);
   if (options.accuracy)
     results.append(accuracy_results(solver_accuracy(
         *options.accuracy, result.error_bound / largest_entry(result.stiffness), result.condition, times.total())));
-  if (*harmonic) {
-    results.append(viscoelastic_results((*harmonic)->springs, (*harmonic)->stiffness));
+  if (harmonic) {
+    results.append(viscoelastic_results(harmonic->springs, harmonic->stiffness));
     add_solver_of_complex(results, problem.resolved.solver);
   }
   if (options.out)
     results.line("files", result.fluctuations.empty()
                               ? "without states: those are of prescribed strains"
                               : fmt::format("states are those of strains of {}", written_strain));
-  std::vector<OutputPart> parts{
-      {"case.toml", [=](const CommonOptions& into) { write_case(into, shared_problem->resolved); }, OutputPart::page}};
-  if (*harmonic) {
-    const auto write = [=](const CommonOptions& into) {
-      write_csv(*into.out / viscoelastic_table_name, viscoelastic_table((*harmonic)->stiffness), true);
-      write_plot(*into.out, moduli_over_frequency,
-                 viscoelastic_plot(shared_problem->resolved.title, (*harmonic)->stiffness), true);
-    };
-    parts.push_back({viscoelastic_table_name, write, OutputPart::page});
-  }
-  parts.push_back({"the assembly", [&](const CommonOptions& into) {
-                     write_assembly(into, problem.resolved.output, problem.assembly);
-                   }});
-  parts.push_back({"the states",
-                   [=](const CommonOptions& into) { write_states(into, *shared_problem, shared_stiffness->result); },
-                   OutputPart::page});
   deliver(options, status_of(result.unstable_modes), std::move(results), std::move(times), parts, failure);
   constexpr const char* strains[] = {"xx", "yy", "xy"};
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
-    hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {shared_stiffness, &result.fluctuations[k]}));
-  if (arrays_wanted() && *harmonic) hand_over(viscoelastic_arrays((*harmonic)->stiffness));
-  hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
+    hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {found, &result.fluctuations[k]}));
+  if (arrays_wanted() && harmonic) hand_over(viscoelastic_arrays(harmonic->stiffness));
+  hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
   return 0;
 }
 
@@ -692,12 +689,6 @@ Run declare_homogenize(CLI::App& command) {
   add_accuracy_option(
       command, options->accuracy,
       "random cells: the size and number that tell the moduli to X;\nelse: fail unless the error is below X");
-  command.footer(
-      "Examples:\n"
-      "  equidem homogenize data/cases/random_cell.toml\n"
-      "  equidem homogenize data/cases/random_cell.toml --set effects.rotation=restrained\n"
-      "  equidem homogenize data/cases/random_cell.toml --set springs.kT=0.2e9 --out result --json -\n"
-      "  equidem homogenize data/cases/random_cell.toml --accuracy 0.01   as many cells as 1 % needs");
   return [options] { return homogenize(*options); };
 }
 

@@ -234,18 +234,6 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   return out.line("work").add("work", "", packing.work, entry_of(options.method).unit_of_work);
 }
 
-void check_outputs(const CommonOptions& common, const PackCase& resolved) {
-  const OutputPlan plan(common);
-  plan.expect_results();
-  plan.expect(assembly_file_name("assembly", resolved.assembly));
-  if (!resolved.packing.box.periodic()) plan.expect(assembly_file_name("assembly_with_walls", resolved.assembly));
-  if (resolved.csv) {
-    plan.expect("grains.csv");
-    if (resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) plan.expect("bonds.csv");
-  }
-  if (resolved.picture) plan.expect("picture.png");
-}
-
 void draw(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
   if (!resolved.picture) return;
   const std::vector<Wall> walls = walls_of(packing.box);
@@ -280,6 +268,33 @@ void write_assemblies(const CommonOptions& common, const PackCase& resolved, con
   }
 }
 
+/// A packing with its network.
+struct Packed {
+  GrainPacking packing = {};
+  Assembly network = {};
+  double density = 0;  ///< kg/m³, of the bodies
+};
+
+std::vector<OutputPart> output_parts(const std::shared_ptr<const PackCase>& resolved,
+                                     const std::shared_ptr<const Packed>& packed) {
+  std::vector<std::string> tables, assemblies{assembly_file_name("assembly", resolved->assembly)}, pictures;
+  if (!resolved->packing.box.periodic())
+    assemblies.push_back(assembly_file_name("assembly_with_walls", resolved->assembly));
+  if (resolved->csv) tables.emplace_back("grains.csv");
+  if (resolved->csv && resolved->packing.shape.kind == PackingShape::Kind::bonded_pair)
+    tables.emplace_back("bonds.csv");
+  if (resolved->picture) pictures.emplace_back("picture.png");
+  return {case_part([=]() -> const TomlValue& { return resolved->document; }),
+          {"the tables",
+           [=](const CommonOptions& into) { write_tables(into, *resolved, packed->packing, packed->density); },
+           OutputPart::folder, tables},
+          {"the assembly",
+           [=](const CommonOptions& into) { write_assemblies(into, *resolved, packed->packing, packed->network); },
+           OutputPart::folder, assemblies},
+          {"the picture", [=](const CommonOptions& into) { draw(into, *resolved, packed->packing); }, OutputPart::page,
+           pictures}};
+}
+
 /// Adds the line of the key at fault to the errors of a task. \param usual the key of an error that names none
 template <typename Task>
 auto located(const PackCase& resolved, const char* usual, const Task& task) {
@@ -302,7 +317,9 @@ int run(const CommonOptions& common) {
   prepare(common);
   const auto shared_case = std::make_shared<const PackCase>(read_pack_case(common.case_file, overrides_of(common)));
   const PackCase& resolved = *shared_case;
-  check_outputs(common, resolved);
+  const auto packed = std::make_shared<Packed>();
+  const std::vector<OutputPart> parts = output_parts(shared_case, packed);
+  OutputPlan(common).expect_results(parts);
   located(resolved, "method", [&] { check(resolved.packing); });
   if (resolved.region) located(resolved, "region", [&] { check_region(resolved.packing.box, *resolved.region); });
   const double bodies = static_cast<double>(resolved.packing.radii.size()), resident = resident_memory();
@@ -318,26 +335,19 @@ int run(const CommonOptions& common) {
   const auto lock = lock_out(common);
   StageTimes times;
   Stopwatch watch;
-  const auto shared_packing =
-      std::make_shared<GrainPacking>(located(resolved, "method", [&] { return try_to_pack(resolved.packing); }));
-  GrainPacking& packing = *shared_packing;
+  GrainPacking& packing = packed->packing = located(resolved, "method", [&] { return try_to_pack(resolved.packing); });
   times.add("packing", watch.lap());
   const StopsHeldBack held_back(packing.failure);
-  Assembly network = network_of(packing, resolved.network);
-  const double density = body_density(resolved, network);
+  const Assembly& network = packed->network = network_of(packing, resolved.network);
+  const double density = packed->density = body_density(resolved, network);
   times.add("network", watch.lap());
   const PackingMeasures measures = measured(resolved, packing);
   times.add("measures", watch.lap());
   std::optional<Error> failure;
   if (packing.failure) failure = failure_of([&] { located(resolved, "method", [&] { throw *packing.failure; }); });
-  const std::vector<OutputPart> parts{
-      {"case.toml", [=](const CommonOptions& into) { write_case(into, shared_case->document); }, OutputPart::page},
-      {"the tables", [&](const CommonOptions& into) { write_tables(into, resolved, packing, density); }},
-      {"the assembly", [&](const CommonOptions& into) { write_assemblies(into, resolved, packing, network); }},
-      {"the picture", [=](const CommonOptions& into) { draw(into, *shared_case, *shared_packing); }, OutputPart::page}};
   deliver(common, "done", packing_results(resolved, packing, network, density, measures), std::move(times), parts,
           failure);
-  hand_over(std::make_shared<const Assembly>(std::move(network)));
+  hand_over(std::shared_ptr<const Assembly>(packed, &network));
   return 0;
 }
 
@@ -346,16 +356,6 @@ int run(const CommonOptions& common) {
 Run declare_pack(CLI::App& command) {
   auto common = std::make_shared<CommonOptions>();
   add_common_options(command, *common);
-  command.footer(
-      "With --out: grains.csv for 'equidem run', and assembly.json, the contacts with their springs for homogenize,\n"
-      "stability, calibrate and solve; where walls hold the bodies also assembly_with_walls.json, whose group "
-      "\"walls\"\n"
-      "is to be held. A pair tied by dashpots counts there as one rigid body.\n"
-      "Examples:\n"
-      "  equidem pack data/cases/pack_jammed.toml --out jammed   a cell for homogenize, stability\n"
-      "  equidem pack data/cases/pack_soil.toml --set packing.grains=300 --out soil      discs that fell\n"
-      "  equidem pack data/cases/pack_ellipses.toml --out ellipses\n"
-      "  equidem pack data/cases/pack_pairs.toml --set packing.shape.kind=bonded_pair --out pairs");
   return [common] { return run(*common); };
 }
 

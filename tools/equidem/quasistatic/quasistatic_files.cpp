@@ -17,7 +17,7 @@
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "run/case_text.hpp"
+#include "case_text.hpp"
 #include "state_files.hpp"
 
 namespace equidem {
@@ -175,26 +175,17 @@ std::optional<Difference> difference(const std::string& key, const TomlValue* th
                     there->type == TomlValue::Type::text && is_removed(there->text)};
 }
 
-TomlValue deciding_keys(TomlValue document) {
-  erase_keys(document, {"title", "output"});
-  if (TomlValue* table = document.find("quasistatic")) {
-    erase_keys(*table, {"max_events", "frame_every"});
-    if (table->entries.empty()) erase_keys(document, {"quasistatic"});
-  }
-  return document;
-}
-
 }  // namespace
 
 std::string deciding_keys_of_path(const Case& resolved, const std::filesystem::path& folder) {
-  return to_toml(deciding_keys(resolved.document), folder);
+  return to_toml(deciding_tables(resolved.document, Decided::path), folder);
 }
 
 FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved) {
   const TomlValue kept = casefile::read_document(there, {});
-  const TomlValue old_keys = deciding_keys(kept);
+  const TomlValue old_keys = deciding_tables(kept, Decided::path);
   const TomlValue new_keys =
-      deciding_keys(casefile::parse_document(to_toml(resolved, there.parent_path()), "the case", {}));
+      deciding_tables(casefile::parse_document(to_toml(resolved, there.parent_path()), "the case", {}), Decided::path);
   if (const auto found = difference("", &old_keys, &new_keys)) {
     bad_input_at(there.string(),
                  found->of_earlier_version
@@ -249,8 +240,7 @@ void write_curve(const CommonOptions& options, const BreakageScene& scene, const
   const LoadCurve curve = curve_of(run);
   if (curve.load.empty()) {
     std::error_code ignored;  // that of an earlier path in the same folder
-    for (const char* extension : {".csv", ".gp", ".svg", ".png"})
-      std::filesystem::remove(*options.out / (std::string("curve") + extension), ignored);
+    for (const std::string& name : plot_files("curve")) std::filesystem::remove(*options.out / name, ignored);
     return;
   }
   const DrivenBy driven_by = scene.path.driven_by;
@@ -267,13 +257,14 @@ void write_curve(const CommonOptions& options, const BreakageScene& scene, const
 
 }  // namespace
 
-void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool checkpoint) {
-  plan.expect(event_table_name);
-  if (checkpoint) plan.expect(path_checkpoint_name);
-  plan.expect_plot("curve");
-  if (wanted.picture)
-    for (const char* end : {".svg", ".png"}) plan.expect(std::string("cracks") + end);
-  expect_state(plan, of_end(wanted), "");
+std::vector<std::string> names_of_end_state(const OutputCase& wanted) {
+  return state_names(of_end(wanted), "");
+}
+
+std::vector<std::string> names_of_figures(const OutputCase& wanted) {
+  std::vector<std::string> names = plot_files("curve");
+  if (wanted.picture) names.insert(names.end(), {"cracks.svg", "cracks.png"});
+  return names;
 }
 
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,

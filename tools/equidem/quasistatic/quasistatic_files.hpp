@@ -35,7 +35,7 @@ struct StoredEvents {
 /// \throws Error (bad_input) where the table is another one, a row was altered, or rows are not numbered on from 0
 StoredEvents read_events(const std::filesystem::path& path, const EventPath& run, const BreakageScene& scene);
 
-/// The case without title, [output], quasistatic.max_events and quasistatic.frame_every, as text.
+/// The tables that decide the path, as text.
 /// \param folder to which paths in it are relative
 std::string deciding_keys_of_path(const Case& resolved, const std::filesystem::path& folder);
 
@@ -58,9 +58,9 @@ inline constexpr const char* event_table_name = "events.csv";
 /// The state from which a path goes on that the table of events does not hold: frictional contacts, and frames.
 inline constexpr const char* path_checkpoint_name = "quasistatic.checkpoint.h5";
 
-/// \param checkpoint whether a state is kept
-/// \throws Error (bad_input) where a file could not be written
-void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool checkpoint);
+/// Names of the files of write_end_state, and of those of write_figures.
+std::vector<std::string> names_of_end_state(const OutputCase& wanted);
+std::vector<std::string> names_of_figures(const OutputCase& wanted);
 
 /// The curve of load against motion with its envelopes, and the picture of the cracks.
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,

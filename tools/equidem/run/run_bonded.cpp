@@ -24,10 +24,99 @@
 #include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/picture.hpp"
 
-#include "run/case_text.hpp"
+#include "case_text.hpp"
 #include "solve/solve.hpp"
 
 namespace equidem {
+namespace {
+
+Vec2 mean_velocity(const std::vector<DiscMotion>& velocities, const std::vector<std::int32_t>& bodies) {
+  Vec2 sum;
+  for (const std::int32_t body : bodies) sum += velocities[static_cast<std::size_t>(body)].u;
+  return sum / static_cast<double>(bodies.size());
+}
+
+/// Speeds of the plane waves along x and y whose bodies move along a component, beside a measured one. The stiffness is
+/// that of long waves: c² = C_11/rho of the P wave along x, C_22/rho along y, C_33/rho of S waves.
+void add_theory(Results& out, const std::string& key, double speed, bool along_x, const WaveStiffness& wave) {
+  const double stiffness = wave.stiffness[along_x ? 0 : 1][along_x ? 0 : 1];
+  const double pressure = std::sqrt(stiffness / wave.density), shear = std::sqrt(wave.stiffness[2][2] / wave.density);
+  if (!(pressure > 0 && shear >= 0)) return;
+  const bool is_pressure = std::abs(speed - pressure) <= std::abs(speed - shear);
+  const double theory = is_pressure ? pressure : shear;
+  out.line("")
+      .note("long waves by the stiffness of the cell: ")
+      .add(key + "theory/pressure", fmt::format("Vp along {} =", along_x ? 'x' : 'y'), pressure, "m/s")
+      .add(key + "theory/shear", "Vs =", shear, "m/s")
+      .note("; ")
+      .add(key + "speed_over_theory", "measured", speed / theory, is_pressure ? "of Vp" : "of Vs");
+  out.set(key + "theory/speed", theory);
+}
+
+}  // namespace
+
+StandingWaves::StandingWaves(const AnySimulation& simulation, const std::vector<Probe>& probes)
+    : simulation_(simulation) {
+  for (const Probe& probe : probes)
+    if (probe.wavelength) waves_.push_back({.probe = probe});
+}
+
+void StandingWaves::open(const std::filesystem::path& /*folder*/, bool /*overwrite*/, const Checkpoint* from) {
+  if (from == nullptr) return;
+  const SavedState saved{.step = 0, .arrays = {from->record.recorded.front()}};
+  const auto rows = rows_in<SavedWave>(saved, saved.arrays.front().name, SavedWave::numbers);
+  for (std::size_t k = 0; k < waves_.size() && k < rows.size(); ++k) {
+    last_step_ = rows[k].last_step;
+    waves_[k].component = rows[k].component;
+    waves_[k].oscillation = rows[k].oscillation;
+  }
+}
+
+void StandingWaves::record(std::int64_t step, double time, bool regular) {
+  if (!regular) return;
+  last_step_ = step;
+  const std::vector<DiscMotion> velocities = simulation_.velocities();
+  for (Wave& wave : waves_) {
+    const Vec2 v = mean_velocity(velocities, wave.probe.bodies);
+    if (wave.component == Component::none && (v.x != 0 || v.y != 0))
+      wave.component = std::abs(v.x) >= std::abs(v.y) ? Component::x : Component::y;
+    if (wave.component != Component::none) wave.oscillation.add(time, wave.component == Component::x ? v.x : v.y);
+  }
+}
+
+void StandingWaves::save(Checkpoint& checkpoint) {
+  std::vector<SavedWave> rows;
+  for (const Wave& wave : waves_) rows.push_back({last_step_, wave.component, wave.oscillation});
+  checkpoint.record.recorded.push_back(saved_rows("waves", std::move(rows), SavedWave::numbers));
+}
+
+Results StandingWaves::results(const std::optional<WaveStiffness>& stiffness) const {
+  Results out;
+  for (const Wave& wave : waves_) {
+    const std::string key = fmt::format("waves/{}/", wave.probe.name);
+    const auto period = wave.oscillation.period();
+    out.line("wave " + wave.probe.name).set(key + "wavelength", *wave.probe.wavelength);
+    if (!period) {
+      out.note(last_step_ < 1 ? "not measured: [output] has no probe_interval"
+                              : "not measured: the velocity passes through zero fewer than two times in this run; give "
+                                "a longer duration, or start the wave with velocities of both signs");
+      out.set(key + "period", nullptr).set(key + "speed", nullptr);
+      continue;
+    }
+    out.add(key + "speed", "", *wave.probe.wavelength / *period, "m/s")
+        .note(fmt::format(", wavelength {:.6g} m over a ", *wave.probe.wavelength))
+        .add(key + "period", "period of", *period, "s")
+        .note(fmt::format(" ({} through zero of {}, ", counted(wave.oscillation.passages(), "passage"),
+                          wave.component == Component::x ? "vx" : "vy"))
+        .add(key + "spread_of_half_periods", "half periods within", *wave.oscillation.spread(), "of their mean",
+             {Shown::percent, 2})
+        .note(")");
+    out.set(key + "passages", wave.oscillation.passages());
+    if (stiffness) add_theory(out, key, *wave.probe.wavelength / *period, wave.component == Component::x, *stiffness);
+  }
+  return out;
+}
+
 namespace {
 
 /// Line of the fingerprint: "# step 1e-06 s, rule lanczos".
@@ -200,22 +289,10 @@ RunPlan BondedRun::plan() {
           .watch_between = true};
 }
 
-std::vector<std::string> BondedRun::files() const {
-  const OutputCase& output = problem_.resolved.output;
-  std::vector<std::string> names;
-  if (output.csv) names.emplace_back("discs.csv");
-  if (output.picture) names.emplace_back("picture.svg");
-  return names;
-}
-
 std::string BondedRun::fingerprint() const {
-  Case known = problem_.resolved;
-  if (TomlValue* table = known.document.find("run")) {
-    erase_keys(*table, {"duration", "time_step", "allow_unstable_step"});  // the step is below
-  }
-  erase_keys(known.document, {"title", "output", "homogenize", "ensemble", "solver"});
-  sort_keys(known.document);
-  return to_toml(known, {}) +
+  TomlValue known = deciding_tables(problem_.resolved.document, Decided::bonded_motion);
+  sort_keys(known);
+  return to_toml(std::move(known), {}) +
          fmt::format("{}{}{}{}\n# checksums: discs and contacts {}\n# springs {}\n# schedules {}\n", step_line,
                      toml_number(step_.step), step_rule, step_.rule, checksum_of(problem_.assembly),
                      checksum_of(problem_.assembly, problem_.springs.springs), checksum_of_schedules(scene_));
@@ -227,34 +304,42 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
       {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work(); }},
   };
   const OutputCase& output = problem_.resolved.output;
-  std::vector<OutputPart> parts;
-  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write) {
-    parts.push_back({name, std::move(write), OutputPart::page});
+  std::vector<OutputPart> parts{case_part([this]() -> const Case& { return problem_.resolved; })};
+  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write,
+                        std::vector<std::string> files = {}) {
+    parts.push_back({name, std::move(write), OutputPart::page, std::move(files)});
   };
-  part("case.toml", [this](const CommonOptions& into) { write_case(into, problem_.resolved); });
-  if (goes_to_rest() && at_rest_.empty()) return parts;
   const auto state_part = [&](const char* name,
-                              const std::function<void(const CommonOptions&, const AssemblyState&)>& write) {
-    part(name, [this, write](const CommonOptions& into) {
+                              const std::function<void(const CommonOptions&, const AssemblyState&)>& write,
+                              std::vector<std::string> files) {
+    const auto write_state = [this, write](const CommonOptions& into) {
+      if (goes_to_rest() && at_rest_.empty()) return;
       const std::vector<DiscMotion> motions = goes_to_rest() ? at_rest_ : simulation_.motions();
       std::vector<ContactForce> forces;
       if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
       write(into, {.assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}});
-    });
+    };
+    part(name, write_state, std::move(files));
   };
-  if (output.csv)
-    state_part("discs.csv", [](const CommonOptions& into, const AssemblyState& state) {
+  if (output.csv) {
+    const auto write = [](const CommonOptions& into, const AssemblyState& state) {
       write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
-    });
-  if (output.vtk)
-    state_part("the state for ParaView", [](const CommonOptions& into, const AssemblyState& state) {
+    };
+    state_part("discs.csv", write, {"discs.csv"});
+  }
+  if (output.vtk) {
+    const auto write = [](const CommonOptions& into, const AssemblyState& state) {
       write_vtk(*into.out, "state", state, into.overwrite);
-    });
-  if (output.picture)
-    state_part("the picture", [this](const CommonOptions& into, const AssemblyState& state) {
+    };
+    state_part("the state for ParaView", write, {});
+  }
+  if (output.picture) {
+    const auto draw = [this](const CommonOptions& into, const AssemblyState& state) {
       const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
       write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
-    });
+    };
+    state_part("the picture", draw, {"picture.svg"});
+  }
   if (goes_to_rest()) return parts;
   part("the plot of energies", [this, &result](const CommonOptions& into) {
     write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
@@ -413,7 +498,7 @@ Results BondedRun::advice(const Balance& balance) const {
                          balance_to_mention, step_.step * std::pow(balance_to_mention / balance.most, 1.0 / order)));
   }
   if (balance.most > Balance::doubtful)
-    out.line("", "that is much: compare with a shorter step before trusting the motion");
+    out.warning("", "that is much: compare with a shorter step before trusting the motion");
   return out;
 }
 

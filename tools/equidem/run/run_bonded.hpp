@@ -3,23 +3,73 @@
 /// `equidem run` of bonded discs, and the time step that an accuracy needs (--accuracy).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "equidem/core/matrix.hpp"
 #include "equidem/dynamics/relaxation.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/dynamics/watch.hpp"
+#include "equidem/motion/saved_state.hpp"
 #include "equidem/output/pictures/picture.hpp"
+#include "equidem/output/results.hpp"
+#include "equidem/output/run/run_loop.hpp"
 
 #include "accuracy.hpp"
 #include "problem.hpp"
 #include "run/run_job.hpp"
-#include "run/run_waves.hpp"
 
 namespace equidem {
+
+/// The continuum that a periodic cell stands for.
+struct WaveStiffness {
+  Matrix3 stiffness{};  ///< Pa, Voigt
+  double density = 0;   ///< kg/m³, of the continuum
+};
+
+class StandingWaves final : public RunRecorder {
+ public:
+  /// \param probes those without a wavelength are left out
+  StandingWaves(const AnySimulation& simulation, const std::vector<Probe>& probes);
+
+  [[nodiscard]] bool empty() const { return waves_.empty(); }
+  /// For each wave the period and the speed, wavelength over period; why not, where it did not oscillate.
+  /// \param stiffness of the cell, for the speeds of theory beside the measured ones; may be none
+  [[nodiscard]] Results results(const std::optional<WaveStiffness>& stiffness) const;
+
+  void open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) override;
+  [[nodiscard]] std::int64_t last_step() const override { return last_step_; }
+  void record(std::int64_t step, double time, bool regular) override;
+  void save(Checkpoint& checkpoint) override;
+
+ private:
+  enum class Component { none, x, y };  ///< of the velocity; none while it is 0
+  struct Wave {
+    Probe probe;
+    Component component = Component::none;
+    Oscillation oscillation = {};
+  };
+
+  struct SavedWave {
+    std::int64_t last_step = -1;
+    Component component = Component::none;
+    Oscillation oscillation = {};
+
+    static constexpr auto numbers = [](auto& wave, const auto& visit) {
+      visit(wave.last_step), visit(wave.component);
+      Oscillation::numbers(wave.oscillation, visit);
+    };
+  };
+
+  const AnySimulation& simulation_;
+  std::vector<Wave> waves_;
+  std::int64_t last_step_ = -1;
+};
 
 /// The step of a resumed run.
 struct KeptStep {
@@ -52,7 +102,6 @@ class BondedRun final : public RunJob {
   [[nodiscard]] Simulation& simulation() override { return simulation_; }
   [[nodiscard]] RunPlan plan() override;
   [[nodiscard]] const char* body_name() const override { return "disc"; }
-  [[nodiscard]] std::vector<std::string> files() const override;
   [[nodiscard]] StageTimes times() const override { return problem_.times; }
   [[nodiscard]] Results scene() const override;
   [[nodiscard]] Results step() const override;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -12,13 +13,244 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
 #include "equidem/output/files/histories.hpp"
+#include "equidem/output/pictures/field_files.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
+#include "equidem/output/plots/plot.hpp"
 
-#include "run/case_text.hpp"
+#include "case_text.hpp"
 
 namespace equidem {
+namespace {
+
+/// The numbers of a moment behind its step, with their columns: visit("time_s", number).
+template <class Moment, class Visit>
+void for_each_number(Moment& m, const Visit& visit) {
+  visit("time_s", m.time), visit("void_ratio", m.void_ratio), visit("porosity", m.porosity);
+  visit("surface_height_m", m.surface.height), visit("surface_slope", m.surface.slope);
+  visit("surface_roughness_m", m.surface.roughness);
+  visit("centre_x_m", m.centre.x), visit("centre_y_m", m.centre.y), visit("outside", m.outside);
+}
+
+std::vector<std::string> columns_of_moments() {
+  std::vector<std::string> columns{"step"};
+  const MeasuredMoment none{};
+  for_each_number(none, [&](const char* name, auto /*value*/) { columns.emplace_back(name); });
+  return columns;
+}
+
+std::vector<double> cells_of(const MeasuredMoment& moment) {
+  std::vector<double> cells;
+  for_each_number(moment, [&](const char* /*name*/, auto value) { cells.push_back(static_cast<double>(value)); });
+  return cells;
+}
+
+constexpr const char *table_name = "measures.csv", *profiles_name = "surface.csv";
+
+/// Rows of numbers of a table that a checkpoint counts on.
+std::vector<std::vector<double>> rows_of(const std::filesystem::path& folder, const FileMark& mark) {
+  const auto cells = csv_cells(read_marked(folder / mark.name, mark));
+  std::vector<std::vector<double>> rows;
+  for (std::size_t k = 1; k < cells.size(); ++k) {
+    rows.emplace_back();
+    for (const std::string& cell : cells[k]) rows.back().push_back(csv_number(cell).value_or(not_measured));
+  }
+  return rows;
+}
+
+/// The shakings of a case, with the times of those that have begun.
+std::vector<BoxShaking> shakings_of(const GrainCase& resolved, const StagedSimulation* simulation) {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  if (resolved.shaking) return {{.shaking = *resolved.shaking}};
+  std::vector<BoxShaking> shakings;
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    if (!resolved.stages[k].shaking) continue;
+    BoxShaking& shaking = shakings.emplace_back(BoxShaking{.shaking = *resolved.stages[k].shaking, .from = unknown});
+    if (simulation == nullptr || k >= simulation->reports().size()) continue;
+    const StageReport& report = simulation->reports()[k];
+    const double step = simulation->time_step();
+    shaking.from = static_cast<double>(report.first) * step;
+    if (report.over) shaking.until = static_cast<double>(report.last) * step;
+  }
+  return shakings;
+}
+
+BoxMeasures measures_of(const GrainCase& resolved) {
+  return casefile::with_place(resolved.where(resolved.measures->cell ? "measures.cell" : "measures"), [&] {
+    return BoxMeasures(resolved.scene, *resolved.measures, shakings_of(resolved, nullptr));
+  });
+}
+
+}  // namespace
+
+GrainMeasures::GrainMeasures(const GrainCase& resolved, const StagedSimulation& simulation)
+    : resolved_(resolved), simulation_(simulation), measures_(measures_of(resolved)) {}
+
+void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) {
+  folder_ = folder;
+  GrowingCsvOptions options{.overwrite = overwrite};
+  if (from != nullptr) options.continue_from = from->mark_of(table_name);
+  table_.emplace(folder / table_name, columns_of_moments(), options);
+  std::vector<std::string> names{"step", "time_s"};
+  const SurfaceProfile profile = measures_.empty_profile();
+  for (std::size_t k = 0; k < measures_.columns(); ++k) names.push_back(fmt::format("x_{:.6g}_m", profile.place(k)));
+  if (from != nullptr) options.continue_from = from->mark_of(profiles_name);
+  profiles_.emplace(folder / profiles_name, names, options);
+  if (from != nullptr) go_on(*from);
+}
+
+void GrainMeasures::go_on(const Checkpoint& from) {
+  std::vector<MeasuredMoment> moments;
+  for (const auto& row : rows_of(folder_, from.mark_of(table_name))) {
+    MeasuredMoment& moment = moments.emplace_back();
+    moment.step = static_cast<std::int64_t>(row[0]);
+    const double* next = row.data();
+    for_each_number(moment, [&](const char* /*name*/, auto& value) {
+      value = static_cast<std::remove_reference_t<decltype(value)>>(*++next);
+    });
+  }
+  std::vector<SurfaceProfile> profiles;
+  for (const auto& row : rows_of(folder_, from.mark_of(profiles_name))) {
+    profiles.push_back(measures_.empty_profile());
+    profiles.back().heights = {row.begin() + 2, row.end()};
+  }
+  measures_.set_shakings(shakings_of(resolved_, &simulation_));
+  measures_.restore(std::move(moments), profiles);
+}
+
+void GrainMeasures::record(std::int64_t step, double time, bool regular) {
+  measures_.set_shakings(shakings_of(resolved_, &simulation_));
+  const GrainSimulation& present = simulation_.present();
+  const MeasuredMoment& moment = measures_.record(step, time, present.present_grains(), present.placed_walls());
+  if (!table_) return;
+  table_->add(step, cells_of(moment), regular);
+  std::vector<double> cells{time};
+  const std::vector<double>& heights = measures_.surface().heights;
+  cells.insert(cells.end(), heights.begin(), heights.end());
+  profiles_->add(step, cells, regular);
+}
+
+void GrainMeasures::save(Checkpoint& checkpoint) {
+  table_->sync();
+  profiles_->sync();
+  checkpoint.files.push_back(table_->mark());
+  checkpoint.files.push_back(profiles_->mark());
+}
+
+namespace {
+
+/// A value before and after: "LABEL 0.2 before, 0.18 after".
+void add_both(Results& out, const std::string& key, const std::string& label, double before, double after,
+              const std::string& unit = {}) {
+  const std::string space = unit.empty() ? "" : unit + " ";
+  out.add(key + "/before", label, before, space + "before", {.digits = 4})
+      .add(key + "/after", "", after, space + "after", {.digits = 4});
+}
+
+}  // namespace
+
+Results GrainMeasures::results() const {
+  const MeasuredMoment& before = measures_.before();
+  const MeasuredMoment& after = measures_.moments().back();
+  Results out;
+  out.set("mean_diameter", measures_.mean_diameter());
+  const bool shakes = resolved_.shaking || std::ranges::any_of(resolved_.stages, [](const StageCase& stage) {
+                        return stage.shaking.has_value();
+                      });
+  if (shakes) {
+    out.line("measured", "before, at ")
+        .add("time/before", "t =", before.time, "s", {.digits = 4})
+        .note(", and after, at ")
+        .add("time/after", "", after.time, "s", {.digits = 4});
+  } else {
+    out.set("time/before", before.time).set("time/after", after.time);
+  }
+  out.line("void ratio");
+  add_both(out, "void_ratio", "e =", before.void_ratio, after.void_ratio);
+  out.note("; ");
+  add_both(out, "porosity", "porosity", before.porosity, after.porosity);
+  out.note(resolved_.measures->region ? "; in the region given" : "; away from walls and surface");
+  out.line("surface");
+  add_both(out, "surface_height", "height", before.surface.height, after.surface.height, "m");
+  out.note("; ");
+  add_both(out, "surface_slope", "slope", before.surface.slope, after.surface.slope);
+  out.note("; ");
+  add_both(out, "surface_roughness", "roughness", before.surface.roughness, after.surface.roughness, "m");
+  out.line("settlement")
+      .add("settlement", "of the surface", before.surface.height - after.surface.height, "m", {.digits = 4})
+      .add("settlement_of_centre", "of the centre of mass", before.centre.y - after.centre.y, "m", {.digits = 4});
+  out.line("outside").add("outside", "", after.outside, "grain", {Shown::count}).note(" outside the box at the end");
+  if (resolved_.measures->region && std::isnan(after.void_ratio))
+    out.warning("WARNING", resolved_.where("measures.region") +
+                               ": no body is left in the region at the end, and there is no void ratio; end the run "
+                               "earlier, or give another region");
+  if (std::isnan(after.surface.height))
+    out.warning("WARNING",
+                resolved_.where("measures") +
+                    ": no heap of bodies is left in the box at the end, and there is no surface; end the run "
+                    "earlier, or close the box by walls");
+  if (const auto [grid, why] = grid_of_fields(); !why.empty()) out.warning("WARNING", why);
+  return out.under("measures");
+}
+
+/// The grid at the end; empty, with the reason, where there is nothing to measure.
+std::pair<CoarseGrid, std::string> GrainMeasures::grid_of_fields() const {
+  if (!resolved_.measures->cell) return {};
+  try {
+    return {measures_.grid_of_fields(simulation_.present()), ""};
+  } catch (const Error& error) {
+    return {CoarseGrid{.region = {}, .columns = 0, .rows = 0},
+            fmt::format("{}: there are no fields at the end: {}", resolved_.where("measures.cell"), error.what())};
+  }
+}
+
+void GrainMeasures::write_files(const CommonOptions& into) const {
+  const std::filesystem::path& folder = *into.out;
+  if (resolved_.output.picture) {
+    Plot plot{.title = resolved_.title, .x = {.label = "x, m"}, .y = {.label = "surface, m"}};
+    const auto add = [&](const SurfaceProfile& profile, double time, PlotColour colour) {
+      Series series{
+          .label = fmt::format("t = {:.4g} s", time), .style = SeriesStyle::line_with_points, .colour = colour};
+      for (std::size_t k = 0; k < profile.heights.size(); ++k) series.add(profile.place(k), profile.heights[k]);
+      plot.series.push_back(std::move(series));
+    };
+    add(measures_.surface_before(), measures_.before().time, PlotColour::sky_blue);
+    add(measures_.surface(), measures_.moments().back().time, PlotColour::vermilion);
+    write_plot(folder, "surface_plot", plot, into.overwrite);
+    Series ratio{.label = "", .colour = PlotColour::blue, .column = "void_ratio"};
+    for (const MeasuredMoment& moment : measures_.moments()) ratio.add(moment.time, moment.void_ratio);
+    if (std::any_of(ratio.y.begin(), ratio.y.end(), [](double e) { return std::isfinite(e); })) {
+      Plot history{.title = resolved_.title, .x = {.label = "time, s"}, .y = {.label = "void ratio e"}};
+      history.series.push_back(std::move(ratio));
+      write_plot(folder, "void_ratio_plot", history, into.overwrite);
+    }
+  }
+  if (!resolved_.measures->cell) return;
+  write_fields(folder, "fields", measures_.fields(simulation_.present(), grid_of_fields().first), into.overwrite);
+}
+
+void write_probe_paths(const CommonOptions& into, const GrainCase& resolved) {
+  constexpr PlotColour colours[] = {PlotColour::blue,     PlotColour::vermilion, PlotColour::green,  PlotColour::orange,
+                                    PlotColour::sky_blue, PlotColour::purple,    PlotColour::yellow, PlotColour::black};
+  if (!resolved.output.probe_interval) return;
+  const auto cells = csv_cells(read_file(*into.out / "history.csv"));
+  Plot plot{.title = resolved.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
+  const auto& names = cells.front();
+  for (const Probe& probe : resolved.probes) {
+    const auto at = std::find(names.begin(), names.end(), probe.name + "_x_m");
+    if (at == names.end() || plot.series.size() == std::size(colours)) continue;
+    const auto column = static_cast<std::size_t>(at - names.begin());
+    Series series{.label = probe.name, .colour = colours[plot.series.size()]};
+    for (std::size_t k = 1; k < cells.size(); ++k)
+      series.add(csv_number(cells[k].at(column)).value_or(not_measured),
+                 csv_number(cells[k].at(column + 1)).value_or(not_measured));
+    plot.series.push_back(std::move(series));
+  }
+  if (!plot.series.empty()) write_plot(*into.out, "paths_plot", plot, into.overwrite);
+}
+
 namespace {
 
 constexpr std::int64_t energy_samples = 200,
@@ -210,17 +442,6 @@ GrainRun::GrainRun(GrainCase resolved, const std::optional<double>& kept_step)
   frame_discs_ = discs_of_frames(case_.bodies(), case_.scene.clumps, bodies_come_and_go(case_), frames_);
 }
 
-std::vector<std::string> GrainRun::files() const {
-  std::vector<std::string> names{"energy.csv"};
-  if (case_.measures) names.emplace_back("measures.csv");
-  if (case_.output.csv) names.emplace_back("grains.csv");
-  if (case_.output.csv && !case_.scene.bonds.empty()) names.emplace_back("bonds.csv");
-  if (case_.output.picture) names.emplace_back("picture.png");
-  for (std::size_t k = 0; k + 1 < case_.stages.size(); ++k)
-    names.push_back(fmt::format("run.{}.checkpoint.h5", case_.stages[k].name));
-  return names;
-}
-
 void GrainRun::begin_from(const std::filesystem::path& path) {
   const std::string there = case_of_checkpoint(path);
   const SavedState state = read_checkpoint(path, there).state;
@@ -335,17 +556,18 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond + l.lost_breaking; }},
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
-  std::vector<OutputPart> parts;
-  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write) {
-    parts.push_back({name, std::move(write), OutputPart::page});
+  std::vector<OutputPart> parts{case_part([this]() -> const TomlValue& { return case_.document; })};
+  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write,
+                        std::vector<std::string> files = {}) {
+    parts.push_back({name, std::move(write), OutputPart::page, std::move(files)});
   };
-  part("case.toml", [this](const CommonOptions& into) { write_case(into, case_.document); });
-  part("energy.csv", [this, &result](const CommonOptions& into) {
+  const auto write_energies = [this, &result](const CommonOptions& into) {
     write_energy_csv(*into.out / "energy.csv", result.record.energies, BodyFamily::colliding, case_.body,
                      into.overwrite);
-  });
+  };
+  part("energy.csv", write_energies, {"energy.csv"});
   if (case_.output.csv) {
-    part("grains.csv", [this](const CommonOptions& into) { write_tables(into); });
+    part("grains.csv", [this](const CommonOptions& into) { write_tables(into); }, {"grains.csv"});
     part("contacts.csv", [this](const CommonOptions& into) {
       const Snapshot now = snapshot();
       std::vector<GrainContact> contacts = simulation_.present().contacts();
@@ -353,15 +575,17 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       for (GrainContact& c : contacts) c.i = place(c.i), c.j = c.j < 0 ? c.j : place(c.j);
       write_grain_contact_csv(*into.out / "contacts.csv", contacts, now.walls, case_.body, into.overwrite);
     });
-    if (!simulation_.bonds().empty())
-      part("bonds.csv", [this](const CommonOptions& into) {
-        const StagedSimulation::HoldingBonds holding = snapshot().bonds;
-        write_bond_csv(*into.out / "bonds.csv", holding.bonds, holding.strengths, into.overwrite);
-      });
+    const auto write_bonds = [this](const CommonOptions& into) {
+      if (simulation_.bonds().empty()) return;
+      const StagedSimulation::HoldingBonds holding = snapshot().bonds;
+      write_bond_csv(*into.out / "bonds.csv", holding.bonds, holding.strengths, into.overwrite);
+    };
+    part("bonds.csv", write_bonds,
+         case_.scene.bonds.empty() ? std::vector<std::string>{} : std::vector<std::string>{"bonds.csv"});
   }
   part("the table of breaks", [this](const CommonOptions& into) { write_breaks(into); });
   if (case_.output.picture) {
-    part("the picture", [this, &result](const CommonOptions& into) { draw(into, result); });
+    part("the picture", [this, &result](const CommonOptions& into) { draw(into, result); }, {"picture.png"});
     part("the plot of energies", [this, &result](const CommonOptions& into) {
       write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, further);
     });
@@ -375,8 +599,14 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       add_film(case_, walls_, first_colours, started, result.record.film);
     });
   }
-  if (measures_ && measures_->last_step() >= 0)
-    part("the measures", [this](const CommonOptions& into) { measures_->write_files(into); });
+  if (measures_) {
+    const auto write_measures = [this](const CommonOptions& into) {
+      if (measures_->last_step() >= 0) measures_->write_files(into);
+    };
+    part("the measures", write_measures, {"measures.csv"});
+  }
+  for (std::size_t k = 0; k + 1 < case_.stages.size(); ++k)  // the run itself writes them
+    parts.front().files.push_back(fmt::format("run.{}.checkpoint.h5", case_.stages[k].name));
   return parts;
 }
 

@@ -325,7 +325,7 @@ Results stage_results(const GrainCase& resolved, const std::vector<StageReport>&
   out.table("stages", std::move(rows));
   for (std::size_t k = 0; k < stages.size(); ++k)
     for (const std::string& text : idle_choices(casefile::repeated(resolved.document, "stage")[k], stages[k]))
-      out.line("WARNING", text);
+      out.warning("WARNING", text);
   return out;
 }
 
@@ -380,14 +380,14 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
            "came within 1 % of the wanted one in its stage:");
   out.table("servos", std::move(rows));
   if (!missed.empty())
-    out.line("WARNING",
-             fmt::format("the force of servo walls never came within 1 % of the wanted one: {}; let them move "
-                         "faster (max_speed), or for longer",
-                         joined(missed)));
+    out.warning("WARNING",
+                fmt::format("the force of servo walls never came within 1 % of the wanted one: {}; let them move "
+                            "faster (max_speed), or for longer",
+                            joined(missed)));
   if (!alone.empty())
-    out.line("WARNING", fmt::format("servo walls met no body, and nothing was pressed: {}; let them move faster "
-                                    "(max_speed), or for longer",
-                                    joined(alone)));
+    out.warning("WARNING", fmt::format("servo walls met no body, and nothing was pressed: {}; let them move faster "
+                                       "(max_speed), or for longer",
+                                       joined(alone)));
   return out;
 }
 
@@ -414,9 +414,10 @@ Results cell_servo_results(const GrainCase& resolved, const std::vector<StageRep
   out.line("", "overshoot and mean error since the stress came within 1 % of the wanted one:");
   out.table("servos", std::move(rows));
   if (!missed.empty())
-    out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
-                                    "faster (max_rate), or for longer{}",
-                                    joined(missed), pulls ? "; contacts carry no tension, bonds do" : ""));
+    out.warning("WARNING",
+                fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
+                            "faster (max_rate), or for longer{}",
+                            joined(missed), pulls ? "; contacts carry no tension, bonds do" : ""));
   return out.under("cell");
 }
 
@@ -493,7 +494,7 @@ Results GrainRun::scene() const {
   if (case_.shaking) out.append(shaking_results(*case_.shaking).under("shaking"));
   for (const StageCase& stage : case_.stages)
     if (stage.shaking) out.line("shaking", fmt::format("in the stage '{}': {}", stage.name, describe(*stage.shaking)));
-  for (const std::string& sentence : gaps_in_walls(case_)) out.line("WARNING", sentence);
+  for (const std::string& sentence : gaps_in_walls(case_)) out.warning("WARNING", sentence);
   add_bonds(out, case_, step_);
   return out;
 }
@@ -567,7 +568,7 @@ Results GrainRun::events() const {
 Results GrainRun::advice(const Balance& balance) const {
   Results out;
   if (std::abs(balance.at_end) > Balance::doubtful)
-    out.line("", "that is much: " + advice_on_balance(case_, simulation_.energy()));
+    out.warning("", "that is much: " + advice_on_balance(case_, simulation_.energy()));
   if (const std::int64_t doubtful = simulation_.present().counters().doubtful; doubtful > 0) {
     out.line("", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their "
                              "vibration: the step is safe for one contact, not for any cluster; compare with one a "

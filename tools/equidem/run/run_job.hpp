@@ -36,8 +36,6 @@ class RunJob {
   [[nodiscard]] virtual AnySimulation& simulation() = 0;
   [[nodiscard]] virtual RunPlan plan() = 0;
   [[nodiscard]] virtual const char* body_name() const = 0;  ///< "disc", "grain"
-  /// Files of --out that are checked before the run, result.json and case.toml apart.
-  [[nodiscard]] virtual std::vector<std::string> files() const = 0;
   /// Seconds of the stages before the run.
   [[nodiscard]] virtual StageTimes times() const { return {}; }
 
@@ -49,7 +47,8 @@ class RunJob {
   [[nodiscard]] virtual Results events() const { return {}; }
   /// Advice on the energy balance.
   [[nodiscard]] virtual Results advice(const Balance& balance) const = 0;
-  /// The state at the end, plots, the case. The job and the result must stay where they are.
+  /// The state at the end, plots, the case; as long as there is no state, nothing of it is written. The job and the
+  /// result must stay where they are.
   [[nodiscard]] virtual std::vector<OutputPart> parts(const RunResult& result) const = 0;
 
   /// Memory that the picture of the end takes beside the run.
@@ -68,15 +67,6 @@ class RunJob {
 std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
                                      const std::optional<std::filesystem::path>& begin_from = {});
 
-/// Steps and their estimated wall-clock seconds, memory, the time step. The first steps are performed.
-/// \param with_files whether the run draws its end
-Results dry_run_results(RunJob& job, bool with_files);
-
-/// time_step, ...; steps, time, energy {terms, elastic, dissipated, input, error, relative_error},
-/// particle_steps_per_second, bytes_per_disc or bytes_per_grain, and the results of the job.
-/// \param failed the run did not come to its end: what then cannot be computed is left out
-Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result, bool failed = false);
-
 /// "J per m of depth", "J".
 const char* energy_unit(Body body);
 
@@ -89,31 +79,6 @@ struct EnergyCurve {
 /// the balance, against time.
 void write_energy_plot(const CommonOptions& into, const std::string& name, const std::string& title, Body body,
                        std::span<const EnergySample> energies, std::span<const EnergyCurve> further);
-
-/// The folder that the loop of a run writes its tables into: that of --out, or a temporary one.
-class HistoryFolder {
- public:
-  /// \param temporary whether tables are wanted where there is no --out
-  HistoryFolder(const std::optional<std::filesystem::path>& out, bool temporary);
-  ~HistoryFolder();
-  HistoryFolder(const HistoryFolder&) = delete;
-  HistoryFolder& operator=(const HistoryFolder&) = delete;
-
-  [[nodiscard]] const std::optional<std::filesystem::path>& path() const { return path_; }
-  [[nodiscard]] bool is_temporary() const { return temporary_; }
-  /// The text of history.csv; empty: none was written.
-  [[nodiscard]] std::string history() const;
-  /// history/COLUMN and measures_history/COLUMN of the tables that were written, energies/COLUMN of the samples.
-  [[nodiscard]] std::vector<ResultArray> arrays(const std::vector<EnergySample>& energies, BodyFamily family,
-                                                Body body) const;
-
- private:
-  std::optional<std::filesystem::path> path_;
-  bool temporary_ = false;
-};
-
-/// The number of frames that a page has room for; 0 where the bodies are too many for any motion to be seen.
-std::int64_t frames_of_film(std::size_t bodies);
 
 /// Add the film to the figures of this thread (DrawnFigures), where it has two frames at least. Displacements of bonded
 /// discs are enlarged where they are too small to be seen, as in write_picture.

@@ -88,6 +88,7 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
     out.set("mechanisms", e.mechanisms);
   }
   out.line("stability", stability(problem, e));
+  if (e.unstable_modes > 0) out.warn();
   out.set("negative_pivots", known(e.negative_pivots)).set("unstable_modes", known(e.unstable_modes));
   return out.set("pivot_growth", e.pivot_growth);
 }
@@ -113,7 +114,7 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
   }
   constexpr double doubtful = 1e-10;
   if (e.condition > 0 && e.relative_residual > doubtful)
-    out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
+    out.warning("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
   add_deformation(out, result.deformation, true);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
   add_stress(out, result);
@@ -134,6 +135,7 @@ void add_deformation(Results& out, const LargestDeformation& deformation, bool s
     out.note(fmt::format(
         ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
         largest_radius));
+    out.warn();
   }
 }
 
@@ -199,13 +201,11 @@ std::string suffix_of(const std::string& load_case) {
   return load_case.empty() ? "" : "_" + load_case;
 }
 
-/// Every file that will be written, checked before the computation.
-void check_solution_files(const CommonOptions& options, const Case& resolved) {
-  const OutputPlan plan(options);
-  plan.expect_results();
-  expect_assembly(plan, resolved.output);
-  for (const NamedLoads& loads : resolved.load_cases) expect_state(plan, resolved.output, suffix_of(loads.name));
-}
+/// The problem, and its load cases as far as they are solved.
+struct Solution {
+  std::optional<Problem> problem = {};
+  std::vector<SolvedCase> cases = {};
+};
 
 void write_state_of(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
                     const SolvedCase& result) {
@@ -230,16 +230,31 @@ void write_state_of(const CommonOptions& options, const Problem& problem, const 
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
+std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Solution>& solution) {
+  std::vector<OutputPart> parts{
+      case_part([=]() -> const Case& { return solution->problem->resolved; }),
+      assembly_part(resolved.output, [=]() -> const Assembly& { return solution->problem->assembly; })};
+  for (std::size_t k = 0; k < resolved.load_cases.size(); ++k) {
+    const auto write = [=](const CommonOptions& into) {
+      const auto& [problem, cases] = *solution;
+      if (k < cases.size()) write_state_of(into, *problem, problem->load_cases[k].loads, cases[k]);
+    };
+    parts.push_back(
+        {"the state", write, OutputPart::page, state_names(resolved.output, suffix_of(resolved.load_cases[k].name))});
+  }
+  return parts;
+}
+
 /// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
-bool solve_once(const CommonOptions& options, const std::shared_ptr<const Problem>& shared_problem,
-                const std::optional<double>& accuracy, CaseSearch* search) {
-  const Problem& problem = *shared_problem;
+bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& parts,
+                const std::shared_ptr<Solution>& solution, const std::optional<double>& accuracy, CaseSearch* search) {
+  const Problem& problem = *solution->problem;
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
   if (accuracy && search == nullptr) solver_options.solver.accuracy = 0.5 * *accuracy;
   solver_options.solver.right_hand_sides = static_cast<int>(problem.load_cases.size());
-  const auto shared_results = std::make_shared<std::vector<SolvedCase>>();
-  std::vector<SolvedCase>& results = *shared_results;
+  std::vector<SolvedCase>& results = solution->cases;
+  results.clear();
   Effects effects;
   std::optional<Error> failure;
   {  // the factorization is not needed beyond the load cases
@@ -276,51 +291,39 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
   }
   Results all = solve_results(problem, problem_results(problem, effects), results);
   if (reached) all.append(accuracy_results(*reached));
-  std::vector<OutputPart> parts{
-      {"case.toml", [=](const CommonOptions& into) { write_case(into, shared_problem->resolved); }, OutputPart::page},
-      {"the assembly",
-       [&](const CommonOptions& into) { write_assembly(into, problem.resolved.output, problem.assembly); }}};
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    const auto write = [=](const CommonOptions& into) {
-      write_state_of(into, *shared_problem, shared_problem->load_cases[k].loads, (*shared_results)[k]);
-    };
-    parts.push_back({"the state", write, OutputPart::page});
-  }
   deliver(options, status_of(results.front().equilibrium.unstable_modes), std::move(all), std::move(times), parts,
           failure);
   if (!arrays_wanted()) return true;
   for (const SolvedCase& result : results) {
     hand_over(state_arrays(result.name.empty() ? "" : result.name + "/",
-                           std::shared_ptr<const Equilibrium>(shared_results, &result.equilibrium)));
+                           std::shared_ptr<const Equilibrium>(solution, &result.equilibrium)));
   }
-  hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
+  hand_over(std::shared_ptr<const Assembly>(solution, &problem.assembly));
   return true;
 }
 
 int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   Case resolved = read_case(options);
-  check_solution_files(options, resolved);
+  const auto solution = std::make_shared<Solution>();
+  const std::vector<OutputPart> parts = output_parts(resolved, solution);
+  OutputPlan(options).expect_results(parts);
   const auto lock = lock_out(options);
+  const auto build = [&](Case wanted) { solution->problem.emplace(prestressed(build_problem(std::move(wanted)))); };
   const bool searched = accuracy && block_can_be_chosen(resolved);
   if (searched && !options.dry_run) {
     CaseSearch search(options, searched_block(resolved, *accuracy));
-    while (!solve_once(options, std::make_shared<const Problem>(prestressed(build_problem(search.propose()))), accuracy,
-                       &search)) {
-    }
+    do {
+      build(search.propose());
+    } while (!solve_once(options, parts, solution, accuracy, &search));
     return 0;
   }
-  const auto problem = std::make_shared<const Problem>(prestressed(build_problem(std::move(resolved))));
-  if (options.dry_run) {
-    Results further;
-    if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
-    const double picture = bytes_of_state_picture(options, problem->resolved.output, problem->assembly);
-    deliver(options, "dry_run",
-            dry_run_results(*problem, further, AssemblyKeys::all, {.inertia = {}, .bytes_of_picture = picture}),
-            problem->times);
-    return 0;
-  }
-  solve_once(options, problem, accuracy, nullptr);
-  return 0;
+  build(std::move(resolved));
+  if (!options.dry_run) return solve_once(options, parts, solution, accuracy, nullptr) ? 0 : 1;
+  const Problem& problem = *solution->problem;
+  Results further;
+  if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
+  const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
+  return dry_run(options, problem, further, AssemblyKeys::all, {.bytes_of_picture = picture});
 }
 
 }  // namespace
@@ -333,12 +336,6 @@ Run declare_solve(CLI::App& command) {
   add_accuracy_option(
       command, *accuracy,
       "tension test of a lattice: the size that tells nu to X;\nelse: fail unless the error is below X");
-  command.footer(
-      "Examples:\n"
-      "  equidem solve data/cases/abe1996_fig6.toml\n"
-      "  equidem solve data/cases/cantilever.toml --out result      tables, picture, files for ParaView\n"
-      "  equidem solve data/cases/abe1996_fig6.toml --set springs.kT=0 --json -\n"
-      "  equidem solve data/cases/abe1996_fig6.toml --accuracy 1e-3    as large a block as nu to 1e-3 needs");
   return [options, accuracy] { return solve(*options, *accuracy); };
 }
 

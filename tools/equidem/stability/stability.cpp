@@ -128,6 +128,7 @@ void add_critical(Results& out, const Stability& s) {
     out.line("this case", state == "stable"     ? "stable in statics"
                           : state == "unstable" ? "UNSTABLE in statics"
                                                 : "a mechanism: see above");
+    if (state == "unstable") out.warn();
     return;
   }
   if (std::isfinite(c.ratio)) {
@@ -150,6 +151,7 @@ void add_critical(Results& out, const Stability& s) {
            : state == "unstable" ? ": UNSTABLE in statics"
            : margin >= 0         ? ": stable in statics but for its mechanisms, which nothing resists"
                                  : ": UNSTABLE in statics, and a mechanism");
+  if (state == "unstable" || (state != "stable" && !(margin >= 0))) out.warn();
 }
 
 void add_growth(Results& out, const Stability& s, bool periodic) {
@@ -199,6 +201,7 @@ void add_natural_frequencies(Results& out, const Stability& s, const Assembly& a
     out.note(largest > worthless  ? " (NOT TOLD APART FROM 0: the error may be as large as omega²)"
              : !natural.converged ? fmt::format(" (NOT CONVERGED: error up to {:.1e} of omega²)", largest)
                                   : "");
+    if (largest > worthless || !natural.converged) out.warn();
     if (assembly.periodic()) out.note(", of motions that repeat with the cell");
     out.line("", "longest period ").add("longest_period", "", 1 / hertz.front(), "s");
     out.add("", "error below", largest, "of omega²", {Shown::power, 1});
@@ -222,6 +225,7 @@ void add_time_step(Results& out, const Stability& s, std::optional<double> densi
         .add("omega_max", "", omega, "rad/s, Lanczos", {.digits = 12})
         .add("", "residual", s.highest.residual / s.highest.value, "of omega²", {Shown::power, 1})
         .note(s.highest.converged ? "" : " (NOT CONVERGED: a lower bound)");
+    if (!s.highest.converged) out.warn();
   } else {
     out.set("omega_max", omega).line("omega_max", "none: no motion that repeats with the given cell vibrates");
   }
@@ -268,7 +272,7 @@ void add_time_step(Results& out, const Stability& s, std::optional<double> densi
   out.set("density", density.value_or(1)).set("density_assumed", !density.has_value());
   out.set("body", to_string(body));
   if (!density) {
-    out.line(
+    out.warning(
         "",
         "DENSITY ASSUMED: 1 kg/m³, since the case gives none (assembly.density). Times scale with its square root, "
         "frequencies and speeds with the inverse");
@@ -461,11 +465,6 @@ Plot plot_of_critical_ratio(const Stability& s) {
   return plot;
 }
 
-void expect_survey(const OutputPlan& plan) {
-  for (const char* name : {dispersion_table, ratio_table}) plan.expect(name);
-  for (const char* name : {dispersion_plot, ratio_plot}) plan.expect_plot(name);
-}
-
 void write_survey(const CommonOptions& options, const Problem& problem, const Stability& s) {
   if (!s.survey) return;
   const std::filesystem::path& folder = *options.out;
@@ -540,6 +539,22 @@ void draw_mode(const CommonOptions& options, const Problem& problem, const Stabi
                        .displacement_scale = visible * std::max(right.x - left.x, high.y - low.y)});
 }
 
+/// The problem that is judged, and the judgement.
+struct Judged {
+  std::optional<Problem> problem = {};
+  Stability stability = {};
+};
+
+std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Judged>& judged) {
+  std::vector<std::string> waves{dispersion_table, ratio_table};
+  for (const char* name : {dispersion_plot, ratio_plot}) std::ranges::move(plot_files(name), std::back_inserter(waves));
+  return {case_part([=]() -> const Case& { return judged->problem->resolved; }),
+          {"the waves", [=](const CommonOptions& into) { write_survey(into, *judged->problem, judged->stability); },
+           OutputPart::page, waves},
+          {"the mode", [=](const CommonOptions& into) { draw_mode(into, *judged->problem, judged->stability); },
+           OutputPart::page, state_names(pictures_of(resolved.output), buckling_suffix)}};
+}
+
 /// Loads and motions that make a prestress are not solved for.
 int dry_run_survey(const StabilityCommand& options, Problem given) {
   const bool acted_on = acts_on_rest(given);
@@ -574,54 +589,36 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  deliver(
-      options, "dry_run",
-      dry_run_results(problem, results, AssemblyKeys::size, {.inertia = vectors_of_frequencies(options.frequencies)}),
-      problem.times);
-  return 0;
+  return dry_run(options, problem, results, AssemblyKeys::size,
+                 {.inertia = vectors_of_frequencies(options.frequencies)});
 }
 
 int stability(const StabilityCommand& options) {
   Case resolved = read_case(options);
-  const OutputPlan plan(options);
-  plan.expect_results();
-  expect_survey(plan);
-  expect_state(plan, pictures_of(resolved.output), buckling_suffix);
+  const auto judged = std::make_shared<Judged>();
+  const std::vector<OutputPart> parts = output_parts(resolved, judged);
+  OutputPlan(options).expect_results(parts);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
   Problem built = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
   if (options.dry_run) return dry_run_survey(options, std::move(built));
-  const auto shared_problem = std::make_shared<const Problem>(prestressed(under_loads(std::move(built))));
-  const Problem& problem = *shared_problem;
+  const Problem& problem = judged->problem.emplace(prestressed(under_loads(std::move(built))));
   std::optional<Error> failure;
-  const auto shared_result = std::make_shared<const Stability>([&] {
-    try {
-      return analyze_stability(problem.assembly, problem.springs.springs, problem.supports,
-                               options_of(problem, options));
-    } catch (const ErrorWith<Stability>& ended) {
-      failure = ended;
-      return ended.found();
-    }
-  }());
-  const Stability& result = *shared_result;
+  const Stability& result = judged->stability = found_by<Stability>(failure, [&] {
+    return analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options));
+  });
   const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
   times.add(result.times);
-  const std::vector<OutputPart> parts{
-      {"case.toml", [=](const CommonOptions& into) { write_case(into, shared_problem->resolved); }, OutputPart::page},
-      {"the waves", [=](const CommonOptions& into) { write_survey(into, *shared_problem, *shared_result); },
-       OutputPart::page},
-      {"the mode", [=](const CommonOptions& into) { draw_mode(into, *shared_problem, *shared_result); },
-       OutputPart::page}};
   deliver(options, result.status(), stability_results(problem, result), std::move(times), parts, failure);
   if (arrays_wanted() && result.critical_load && !result.critical_load->motion.empty())
-    hand_over(motion_arrays("buckling/", {shared_result, &result.critical_load->motion}));
+    hand_over(motion_arrays("buckling/", {judged, &result.critical_load->motion}));
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
   for (std::size_t k = 0; arrays_wanted() && k < result.natural.motions.size(); ++k) {
-    const std::shared_ptr<const std::vector<DiscMotion>> mode(shared_result, &result.natural.motions[k]);
+    const std::shared_ptr<const std::vector<DiscMotion>> mode(judged, &result.natural.motions[k]);
     hand_over(motion_arrays(fmt::format("modes/{}/", k), mode));
   }
-  hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
+  hand_over(std::shared_ptr<const Assembly>(judged, &problem.assembly));
   return 0;
 }
 
@@ -635,15 +632,6 @@ Run declare_stability(CLI::App& command) {
       ->check(whole_number(0, 50))
       ->capture_default_str()
       ->type_name("N");
-  command.footer(
-      "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]]\n"
-      "or [test], or as a free body.\n"
-      "Examples:\n"
-      "  equidem stability data/cases/abe1996_fig6.toml         free edges: stable down to kT/kN = -0.2650\n"
-      "  equidem stability data/cases/column.toml --set effects.prestress=on   the load at which a column buckles\n"
-      "  equidem stability sample.toml --frequencies 10         the ten lowest natural frequencies\n"
-      "  equidem stability cell.toml --out waves                dispersion, critical kT/kN over the zone\n"
-      "  equidem stability cell.toml --set springs.kT=-0.1e9    stable in statics, but not in motion");
   return [options] { return stability(*options); };
 }
 

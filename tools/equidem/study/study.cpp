@@ -370,14 +370,6 @@ StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const st
   return read_samples(table, study, identity);
 }
 
-/// Files of an earlier run of the same study are replaced; those of anything else are not.
-void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
-  const OutputPlan plan(verb.common, continues);
-  plan.expect_json();
-  for (const char* name : {"samples.csv", "study.csv", "result.json", page_name}) plan.expect(name);
-  plan.expect_plot(study_plot_name(study));
-}
-
 void check(const StudyVerb& verb) {
   if (verb.file.empty())
     bad_input("it is not said what to study", "a study is a file (.toml)",
@@ -443,40 +435,46 @@ int run_verb(const StudyVerb& verb) {
       study.checksum(fmt::format("{} seed {} threads {}", machine_text(), verb.options.seed, thread_count()));
   const auto lock = lock_out(verb.common);
   StudySamples kept = samples_to_keep(verb, study, identity);
-  const bool continues = !kept.tasks.empty();
-  check_outputs(verb, study, continues);
   const auto& folder = verb.common.out;
   Stopwatch since_saved;
   const auto save = [&](const StudySamples& done) {
     write_samples(*folder / "samples.csv", samples_table(study, done, identity));
   };
+  StudySamples samples;
+  std::optional<StudyReport> made;
+  const auto plot = std::make_shared<Plot>();
+  const auto draw = [name = study_plot_name(study), plot](const CommonOptions& into) {
+    if (!plot->series.empty()) write_plot(*into.out, name, *plot, true);
+  };
+  const auto write = [&](const CommonOptions& into) { write_csv(*into.out / "study.csv", study_table(*made), true); };
+  const std::vector<OutputPart> parts{
+      {"samples.csv", [&](const CommonOptions& /*into*/) { save(samples); }, OutputPart::folder, {"samples.csv"}},
+      {"study.csv", write, OutputPart::folder, {"study.csv"}},
+      {study_plot_name(study), draw, OutputPart::page, plot_files(study_plot_name(study))}};
+  // Files of an earlier run of the same study are replaced; those of anything else are not.
+  OutputPlan(verb.common, !kept.tasks.empty()).expect_results(parts);
   SavedOnTheWay saved(verb.common);
-  const StudySamples samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
+  samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
     if (!folder || since_saved.seconds() < 1) return;
     saved([&] { save(done); });
     since_saved.lap();
   });
 
-  StudyReport report{.study = study,
-                     .result = evaluate(study, samples),
-                     .options = verb.options,
-                     .command = command_of(verb),
-                     .checksum = identity,
-                     .accuracy = verb.accuracy,
-                     .recommendation = {}};
+  StudyReport& report = made.emplace(StudyReport{.study = study,
+                                                 .result = evaluate(study, samples),
+                                                 .options = verb.options,
+                                                 .command = command_of(verb),
+                                                 .checksum = identity,
+                                                 .accuracy = verb.accuracy,
+                                                 .recommendation = {}});
   if (verb.accuracy) report.recommendation = recommend(report.result, *verb.accuracy);
   Results results = study_results(report);
   if (samples.stopped)
-    results.block(fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round")));
+    results.block(fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round")))
+        .warn();
   StageTimes times;
   times.add("study", watch.seconds());
-  const auto draw = [name = study_plot_name(study), plot = study_plot(report)](const CommonOptions& into) {
-    if (!plot.series.empty()) write_plot(*into.out, name, plot, true);
-  };
-  const std::vector<OutputPart> parts{
-      {"samples.csv", [&](const CommonOptions& /*into*/) { save(samples); }},
-      {"study.csv", [&](const CommonOptions& into) { write_csv(*into.out / "study.csv", study_table(report), true); }},
-      {study_plot_name(study), draw, OutputPart::page}};
+  *plot = study_plot(report);
   deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
   if (samples.stopped) {
     throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
@@ -512,11 +510,6 @@ Run declare_study(CLI::App& command) {
       ->capture_default_str()
       ->check(whole_number(0))
       ->type_name("S");
-  command.footer(
-      "Examples:\n"
-      "  equidem study data/studies/integrators.toml --out figures\n"
-      "  equidem study data/studies/abe_lattice.toml --accuracy 0.01\n"
-      "Ctrl-C keeps what is done; the same command with the same --out goes on from there.");
   return [verb] { return run_verb(*verb); };
 }
 

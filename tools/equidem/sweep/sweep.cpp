@@ -36,8 +36,7 @@
 #include "equidem/study/evaluate.hpp"
 
 #include "problem.hpp"
-#include "sweep/sweep_plan.hpp"
-#include "sweep/sweep_table.hpp"
+#include "sweep/sweep_points.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -355,13 +354,6 @@ std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
   return read_sweep_points(table, sweep.plan);
 }
 
-void check_outputs(const Sweep& sweep) {
-  const OutputPlan plan(sweep.options.common, sweep.options.resume);
-  for (const char* name : {Sweep::table_name, Sweep::case_name, "result.json", page_name}) plan.expect(name);
-  for (const std::string& name : curve_names(sweep.plan)) plan.expect_plot(name);
-  plan.expect_json();
-}
-
 /// None where one of them is no such number.
 template <class Number>
 std::optional<std::vector<Number>> all_numbers(const std::vector<std::string>& values) {
@@ -412,8 +404,10 @@ void add_failures(Results& results, std::span<const SweepPoint> points, std::siz
     if (known == reasons.end()) known = reasons.insert(reasons.end(), {point.message, {}});
     known->second.push_back(fmt::format("{}", point.number));
   }
-  results.line("failed",
-               fmt::format("{}; {} done", counted(static_cast<long long>(failed), "point"), points.size() - failed));
+  results
+      .line("failed",
+            fmt::format("{}; {} done", counted(static_cast<long long>(failed), "point"), points.size() - failed))
+      .warn("WARNING, failed:");
   for (std::size_t k = 0; k < std::min(reasons.size(), most); ++k) {
     auto& [reason, numbers] = reasons[k];
     const bool one = numbers.size() == 1, many = numbers.size() > most_numbers;
@@ -434,15 +428,25 @@ int sweep(const SweepOptions& options) {
               read_base(options.verb, options.common)};
   sweep.plan.waves = names_of_waves(sweep.base.document);
   check_keys(options, sweep.plan, sweep.base);
-  check_outputs(sweep);
+  std::optional<SweepRun> computed;
+  std::vector<SweepPoint> points;
+  const auto draw = [&](const CommonOptions& into) {
+    if (!computed->stopped()) write_curves(*into.out, sweep.plan, points, options.title.value_or(sweep.base.title));
+  };
+  const std::vector<OutputPart> parts{{Sweep::table_name,
+                                       [&](const CommonOptions& /*into*/) { computed->save(); },
+                                       OutputPart::folder,
+                                       {Sweep::table_name, Sweep::case_name}},
+                                      {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
+  OutputPlan(options.common, options.resume).expect_results(parts);
   if (options.common.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
   const auto lock = lock_out(options.common);
-  SweepRun run(sweep, points_to_keep(sweep));
+  SweepRun& run = computed.emplace(sweep, points_to_keep(sweep));
   const auto& folder = options.common.out;
   if (folder) write_file(*folder / Sweep::case_name, text_of_case(sweep), true);
   run();
 
-  const std::vector<SweepPoint> points = run.points();
+  points = run.points();
   const auto failed = static_cast<std::size_t>(std::ranges::count_if(points, &SweepPoint::failed));
   const bool all_failed = failed == points.size();
   Results results;
@@ -451,14 +455,9 @@ int sweep(const SweepOptions& options) {
   results.table("points", sweep_rows(sweep.plan, points));
   if (failed > 0) add_failures(results, points, failed);
   if (run.stopped())
-    results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size()));
+    results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size())).warn();
   StageTimes times;
   times.add("points", run.seconds());
-  std::vector<OutputPart> parts{{Sweep::table_name, [&](const CommonOptions& /*into*/) { run.save(); }}};
-  if (!run.stopped())
-    parts.push_back({"the curves", [&](const CommonOptions& into) {
-                       write_curves(*into.out, sweep.plan, points, options.title.value_or(sweep.base.title));
-                     }});
   deliver(options.common,
           run.stopped() ? "interrupted"
           : all_failed  ? "failed"
@@ -539,17 +538,6 @@ Run declare_sweep(CLI::App& command) {
       ->check(plain_text())
       ->type_name("TEXT");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
-  command.footer(
-      "Examples:\n"
-      "  equidem sweep data/cases/abe1996_fig6.toml --key ratio --from 0 --to 1 --steps 11 --out curve\n"
-      "  equidem sweep data/cases/abe1996_fig6.toml --key assembly.rows --values 5,11,21,41\n"
-      "  equidem sweep data/cases/random_cell.toml --verb homogenize --key ratio --values 0,0.5,1 --seeds 1-5\n"
-      "  equidem sweep data/cases/abe1996_fig6.toml --list --key assembly.rows --values 11,21 --key assembly.columns\n"
-      "                --values 11,21\n"
-      "The table sweep.csv has a row for each point, the keys and all numbers of the verb's result, units in the "
-      "names.\n"
-      "A point that fails stays in the table with its reason, and the exit code is 0; it is 1 where all fail.\n"
-      "Ctrl-C keeps what is done; --resume continues.");
   return [options] { return sweep(*options); };
 }
 

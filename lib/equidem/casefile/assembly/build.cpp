@@ -94,18 +94,17 @@ std::string described(const MaterialCase& material, const SpringConstants& sprin
                      relation.validity);
 }
 
-void add_test(const Case& resolved, const Assembly& assembly, Scene& scene) {
+}  // namespace
+
+void add_constant_actions(Scene& scene, std::span<const Support> supports, const LoadCase& loads) {
   const auto constant = [](const std::optional<double>& value) -> std::optional<Schedule> {
     if (!value) return {};
     return Schedule{.value = *value};
   };
-  const TensionSetup test = with_place(resolved.where("test"), [&] { return tension_setup(assembly, *resolved.test); });
-  for (const Support& support : test.supports)
+  for (const Support& support : supports)
     scene.supports.push_back({support.group, constant(support.ux), constant(support.uy), constant(support.rotation)});
-  for (const Load& load : test.loads) scene.loads.push_back({.load = load, .factor = {.value = 1}});
+  for (const Load& load : loads) scene.loads.push_back({.load = load, .factor = {.value = 1}});
 }
-
-}  // namespace
 
 Assembly build_assembly(const Case& resolved) {
   const AssemblyCase& wanted = resolved.assembly;
@@ -195,7 +194,11 @@ Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactS
   scene.velocities = run.velocities;
   scene.walls = run.walls;
   scene.gravity = run.gravity;
-  if (resolved.test) add_test(resolved, assembly, scene);
+  if (resolved.test) {
+    const TensionSetup test =
+        with_place(resolved.where("test"), [&] { return tension_setup(assembly, *resolved.test); });
+    add_constant_actions(scene, test.supports, test.loads);
+  }
   check(scene, resolved.rotation, [&](const std::string& path) { return resolved.where(path); });
   return scene;
 }

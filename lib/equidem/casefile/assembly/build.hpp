@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct BuiltSprings {
 /// \throws Error (bad_input), with the line of the case file: what the relation cannot represent, springs that
 ///         are missing or not positive
 BuiltSprings build_springs(const Case& resolved, const Assembly& assembly);
+
+/// Supports and loads that act from the start.
+void add_constant_actions(Scene& scene, std::span<const Support> supports, const LoadCase& loads);
 
 /// The scene: discs with their inertia, supports, loads, walls and velocities; the supports and loads of [test] act
 /// from the start.

@@ -453,19 +453,18 @@ std::vector<Key<S>> keys_of_member(M S::*link, const std::vector<Key<M>>& keys) 
   return all;
 }
 
-/// Assign the keys that a checked table has.
-template <class S>
-void read_table(const std::vector<Key<S>>& keys, TomlValue table, S& into) {
-  for (const Key<S>& key : keys)
-    if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, {});
-}
-
-/// Likewise; paths of the table, relative to a folder, become those that the program opens.
+/// Assign the keys that a checked table has; its paths, relative to a folder, become those that the program opens.
 template <class S>
 void read_table_in_place(const std::vector<Key<S>>& keys, TomlValue& table, const std::filesystem::path& folder,
                          S& into) {
   for (const Key<S>& key : keys)
     if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, folder);
+}
+
+/// Likewise, of a table without paths.
+template <class S>
+void read_table(const std::vector<Key<S>>& keys, TomlValue table, S& into) {
+  read_table_in_place(keys, table, {}, into);
 }
 
 template <class T>

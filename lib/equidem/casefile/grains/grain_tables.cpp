@@ -375,8 +375,8 @@ GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const std::s
   GrainRows bodies;
   if (common.path) {
     std::optional<Vec2> cell;
-    if (tables.cell_table && tables.cell_table->cell.along == PeriodicCell::Along::xy)
-      cell = Vec2{tables.cell_table->cell.width, tables.cell_table->cell.height};
+    if (tables.cell_table && tables.cell_table->along == PeriodicCell::Along::xy)
+      cell = Vec2{tables.cell_table->width, tables.cell_table->height};
     bodies = with_key(*holder.find("grains"), prefix + "grains", "path",
                       [&] { return read_grains(*common.path, common.density, shapes, cell); });
     check_density_of_springs(root, tables, *common.path, bodies);
@@ -602,17 +602,16 @@ void take_servo(const TomlValue& table, const std::string& path, std::span<const
 }
 
 void bind_cell(File<GrainTables>& file) {
-  using C = CellTable;
+  using C = PeriodicCell;
   file.table("cell", &GrainTables::cell_table,
              "a rectangular cell whose content repeats: bodies under laws that give a force")
-      .keys({key("periodic", &C::cell, &PeriodicCell::along,
+      .keys({key("periodic", &C::along,
                  "xy: along x and y, without walls and gravity; x: along x, between walls that are lines along x"),
-             key("corner", &C::cell, &PeriodicCell::corner, unit("m"),
-                 "lower left corner; bodies outside are taken as their images inside"),
-             key("width", &C::cell, &PeriodicCell::width, required, unit("m"), positive,
+             key("corner", &C::corner, unit("m"), "lower left corner; bodies outside are taken as their images inside"),
+             key("width", &C::width, required, unit("m"), positive,
                  "period along x; more than two of the largest diameters, as the height"),
-             key("height", &C::cell, &PeriodicCell::height, optional, unit("m"), positive, "period along y"),
-             key("shift", &C::cell, &PeriodicCell::shift, unit("m"),
+             key("height", &C::height, optional, unit("m"), positive, "period along y"),
+             key("shift", &C::shift, unit("m"),
                  "along x, of the images above against the cell: a cell that is sheared at the start")});
   file.table("cell.motion", "rates at which the cell and its bodies deform; with integrator = \"velocity_verlet\"")
       .described(cell_motion_keys());
@@ -649,7 +648,7 @@ std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<cons
 void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables) {
   const TomlValue* given = root.find("cell");
   if (given == nullptr) return;
-  PeriodicCell cell = tables.cell_table->cell;
+  PeriodicCell cell = *tables.cell_table;
   if (cell.along == PeriodicCell::Along::xy && given->find("height") == nullptr)
     fail_at(*given, "cell.height", "missing key", "a cell that repeats along xy has one", "Add height = ... to [cell]");
   if (const TomlValue* measures = root.find("measures"))

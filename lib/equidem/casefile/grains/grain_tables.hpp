@@ -40,11 +40,6 @@ struct CollisionTable {
   std::optional<double> young_modulus, poisson_ratio, shear_wave_speed;  ///< Pa, -, m/s
 };
 
-/// [cell], without the tables in it.
-struct CellTable {
-  PeriodicCell cell;
-};
-
 /// [bonds].
 struct BondsTable {
   GrainBond common;
@@ -59,7 +54,7 @@ struct GrainTables : GrainCase, MotionTables {
   std::optional<SpringsTable> springs;
   BondsTable bonds;
   std::optional<StrengthOptions> strength;
-  std::optional<CellTable> cell_table;
+  std::optional<PeriodicCell> cell_table;  ///< without the tables in it
   std::optional<ShakingOptions> shaking_table;
 };
 

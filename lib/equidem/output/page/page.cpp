@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include <variant>
 
 #include "equidem/core/file.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/vtk.hpp"
@@ -42,18 +44,24 @@ bool DrawnFigures::gnuplot_hangs() {
 
 namespace {
 
-/// A row of answers.csv: a number of a result that the page of a verb shows, by its path (find_result), with its label
-/// and the path of its error; '*' stands for every position of a list or every key of an object.
-struct AnswerKey {
-  std::string verb, place, path, label, error;
-};
-
-const std::vector<AnswerKey>& answer_keys() {
-  static const std::vector<AnswerKey> all = [] {
-    std::vector<AnswerKey> keys;
-    for (const std::vector<std::string>& row : csv_cells(answers_csv))
-      if (row[0] != "verb") keys.push_back({row[0], row[1], row[2], row[3], row[4]});  // but the names of the columns
-    return keys;
+/// The rows of answers.csv.
+const std::vector<ShownNumber>& shown_numbers() {
+  static const std::vector<ShownNumber> all = [] {
+    std::vector<ShownNumber> numbers;
+    for (const std::vector<std::string>& row : csv_cells(answers_csv)) {
+      if (row[0] == "verb") continue;  // the names of the columns
+      const bool power = row[7].starts_with('e');
+      const auto digits = number_from<int>(std::string_view(row[7]).substr(power ? 1 : 0));
+      numbers.push_back({row[0],
+                         row[1],
+                         row[2],
+                         row[3],
+                         row[4],
+                         row[5],
+                         row[6],
+                         {power ? Shown::power : Shown::number, digits.value_or(8)}});
+    }
+    return numbers;
   }();
   return all;
 }
@@ -127,8 +135,7 @@ std::string range_html(const std::vector<double>& values, int digits) {
 std::vector<Answer> shown(const Results& results, const Results& units, std::string_view verb, std::string_view place,
                           int digits) {
   std::vector<Answer> answers;
-  for (const AnswerKey& key : answer_keys()) {
-    if (key.verb != verb || key.place != place) continue;
+  for (const ShownNumber& key : numbers_shown_of(verb, place)) {
     for (const auto& [path, name] : expanded(results, key.path)) {
       Answer answer{.label = name.empty() ? key.label : fmt::format("{}, {}", key.label, name), .text = {}};
       if (const auto* range = value_of<std::vector<double>>(results, path)) {
@@ -158,7 +165,14 @@ std::vector<Answer> shown(const Results& results, const Results& units, std::str
 }  // namespace
 
 bool has_page(std::string_view verb) {
-  return std::ranges::find(answer_keys(), verb, &AnswerKey::verb) != answer_keys().end();
+  return std::ranges::find(shown_numbers(), verb, &ShownNumber::verb) != shown_numbers().end();
+}
+
+std::vector<ShownNumber> numbers_shown_of(std::string_view verb, std::string_view place) {
+  std::vector<ShownNumber> found;
+  std::ranges::copy_if(shown_numbers(), std::back_inserter(found),
+                       [&](const ShownNumber& number) { return number.verb == verb && number.place == place; });
+  return found;
 }
 
 Answers answers_of(std::string_view verb, const Results& results) {
@@ -200,8 +214,8 @@ constexpr std::pair imbalance_limits{1e-3, 0.1};  // of the largest energy
 constexpr std::pair unbalanced_force_limits{1e-6, 1e-3};
 
 std::optional<double> number(const Results& results, const char* path) {
-  const auto* value = value_of<double>(results, path);
-  return value != nullptr && std::isfinite(*value) ? std::optional(*value) : std::nullopt;
+  const auto value = number_of(results, path);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Good up to the first limit, doubtful up to the second.
@@ -287,11 +301,6 @@ namespace {
 
 constexpr std::size_t most_text_bytes = 100'000;  ///< of the case and of the report
 
-/// Marks of lines of the report that a reader must not miss.
-constexpr std::array<std::string_view, 11> marks{"WARNING",          "UNSTABLE",     "NOT FEASIBLE", "NOT CONVERGED",
-                                                 "NOT TOLD APART",   "BROKEN",       "ASSUMED",      "that is much",
-                                                 "units than meant", "Pa are meant", "INCOMPLETE"};
-
 std::string text_of(const Results& results, const char* path) {
   const auto* text = value_of<std::string>(results, path);
   return text != nullptr ? *text : "";
@@ -308,40 +317,29 @@ std::string one_paragraph(const std::string& text) {
   return paragraph;
 }
 
-/// The lines of the report with a mark, without the columns and breaks of the report.
+/// The lines of the report that are warnings, without the columns and breaks of the report.
 std::vector<std::string> warnings_of(const Results& results) {
-  std::vector<Results> lines(1);
   std::vector<std::string> found;
+  Results line;
+  bool warns = false;
+  const auto end_line = [&] {
+    if (std::exchange(warns, false)) found.push_back(one_paragraph(line.report()));
+    line = {};
+  };
   for (const Result& part : results.parts()) {
+    const bool text = part.part == Result::Part::block;
     if (part.hidden || part.part == Result::Part::table || part.part == Result::Part::list) continue;
-    if (part.part == Result::Part::line || part.part == Result::Part::block) lines.emplace_back();
-    Results& line = lines.back();
-    switch (part.part) {
-      case Result::Part::line:
-        line.line(part.label == "failed" ? "WARNING, failed:" : part.label);
-        break;
-      case Result::Part::note:
-        line.note(part.label);
-        break;
-      case Result::Part::block:
-        line.block(part.label);
-        break;
-      case Result::Part::value:
-        line.add("", part.label, part.value, part.unit, part.shown);
-        break;
-      case Result::Part::table:
-      case Result::Part::list:
-        break;
+    if (text || part.part == Result::Part::line) end_line();
+    warns = warns || part.warning.has_value();
+    if (part.part == Result::Part::line) {
+      line.line(part.warning && !part.warning->empty() ? *part.warning : part.label);
+    } else if (part.part == Result::Part::value) {
+      line.add("", part.label, part.value, part.unit, part.shown);
+    } else {
+      text ? line.block(part.label) : line.note(part.label);
     }
   }
-  for (const Results& line : lines) {
-    const std::string text = one_paragraph(line.report());
-    for (const std::string_view mark : marks) {
-      if (text.find(mark) == std::string::npos) continue;
-      found.push_back(text);
-      break;
-    }
-  }
+  end_line();
   return found;
 }
 
@@ -495,8 +493,7 @@ std::string repeat_html(const ResultPage& page) {
 std::string result_page_html(const ResultPage& page) {
   const std::string title = text_of(page.results, "title");
   const std::string heading = title.empty() ? "equidem " + page.verb : title;
-  std::vector<std::string> warnings;
-  for (std::string& line : warnings_of(page.results)) warnings.push_back(std::move(line));
+  std::vector<std::string> warnings = warnings_of(page.results);
   if (page.status == "unstable" && warnings.empty())
     warnings.emplace_back("UNSTABLE: any disturbance would grow: this is no state of rest");
   std::string warning_list;

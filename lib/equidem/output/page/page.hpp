@@ -53,6 +53,18 @@ struct Answers {
   std::vector<Answer> quality;  ///< errors, residuals and whatever shows how far the answer may be trusted
 };
 
+/// A row of answers.csv: a number that is shown of the result of a verb.
+struct ShownNumber {
+  std::string verb;
+  std::string place;  ///< "main" or "quality" of its page, "sweep" in the report and the curves of a sweep
+  std::string path;   ///< as in find_result; '*': every position of a list, every key of an object, of a sweep a wave
+  std::string label;
+  std::string error;   ///< path of its error
+  std::string axis;    ///< label of its curve; empty: not drawn
+  std::string theory;  ///< path of the number that theory gives
+  Shown shown;         ///< in the report of a sweep
+};
+std::vector<ShownNumber> numbers_shown_of(std::string_view verb, std::string_view place);
 /// Whether a verb has a page: its numbers are listed in answers.csv.
 bool has_page(std::string_view verb);
 

@@ -376,26 +376,21 @@ double finite_or_nan(double value) {
 PlotData wide_table(const Plot& plot) {
   PlotData data;
   UniqueNames names;
-  std::vector<const std::vector<double>*> columns;
+  Table table;
   const auto add = [&](const std::vector<double>& values, const std::string& name, const char* fallback) {
-    columns.push_back(&values);
-    return names.add(name, fallback);
+    const std::string unique = names.add(name, fallback);
+    table.view(unique, values, finite_or_nan);
+    return unique;
   };
   for (const Series& series : plot.series) {
     PlotData::Place& place = data.places.emplace_back();
-    place.x = columns.empty() ? add(series.x, column_name(plot.x.label), "x") : data.places.front().x;
+    place.x = table.columns().empty() ? add(series.x, column_name(plot.x.label), "x") : data.places.front().x;
     place.y = add(series.y, series_name(series), "y");
     if (series.low.empty()) continue;
     place.low = add(series.low, place.y + "_low", "low");
     place.high = add(series.high, place.y + "_high", "high");
   }
-  const std::size_t rows = columns.empty() ? 0 : columns.front()->size();
-  CsvText text(names.all());
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (const auto* column : columns) text.cell(finite_or_nan((*column)[row]));
-    text.end_row();
-  }
-  data.csv = text.text();
+  data.csv = table.csv();
   return data;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The case text in checkpoints of runs: all data that affect the motion, including those of files that the case names,
-/// without how long it lasts and what is written. Events that time steps cannot resolve.
+/// Which tables of a case decide a result. The case text in checkpoints of runs: all data that affect the motion,
+/// including those of files that the case names, without how long it lasts and what is written. Events that time steps
+/// cannot resolve.
 #pragma once
 
 #include <cstddef>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +17,12 @@
 
 namespace equidem {
 
-void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names);
+/// A result that a case decides: the assembly of its discs, the motion of bonded discs or of bodies that collide, the
+/// path of contacts that break.
+enum class Decided { assembly, bonded_motion, colliding_motion, path };
+/// The case without the tables and keys that do not decide the result.
+TomlValue deciding_tables(TomlValue document, Decided result);
+
 void add(Checksum& sum, const Schedule& schedule);
 
 /// Begins the line of a case text that names the time step, in s.

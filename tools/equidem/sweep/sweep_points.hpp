@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The points of a sweep: which keys take which values.
+/// The keys that a sweep varies, and its points as a table that can be written, read back and continued.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/engine/toml.hpp"
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/quantities.hpp"
 #include "equidem/output/results.hpp"
 
 #include "command.hpp"
@@ -65,5 +71,44 @@ SweepPlan sweep_plan(const std::string& verb, const std::vector<KeyOptions>& key
 /// \param base document of the case, for the key "ratio"
 std::vector<std::string> options_of(const SweepPlan& plan, const std::vector<std::string>& values,
                                     const TomlValue& base);
+
+/// One point of a sweep.
+struct SweepPoint {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  std::int64_t number = 0;            ///< from 1
+  std::vector<std::string> values;    ///< of the keys
+  std::string status;                 ///< of the result of the verb, "solved", "unstable"; or "failed"
+  std::string message;                ///< of a point that failed: why
+  std::vector<ScalarNumber> numbers;  ///< of the result of the verb
+
+  [[nodiscard]] bool failed() const { return status == "failed"; }
+  /// The number with these keys; null where there is none.
+  [[nodiscard]] const ScalarNumber* find(std::string_view path) const;
+  /// Its value; NaN where there is none.
+  [[nodiscard]] double at(std::string_view path) const;
+};
+
+/// One row a point: point, the keys, status, every number that some point has, message; units are in the names.
+Table sweep_table(const SweepPlan& plan, std::span<const SweepPoint> points);
+
+/// Reads a table of sweep_table.
+/// \throws Error (bad_input) where the file is another table or damaged
+std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, const SweepPlan& plan);
+
+/// One row for each point: number, keys, status, the numbers as in the result of the verb, message. "value" is that of
+/// the first key.
+std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoint> points);
+
+/// Files of the plots that a sweep may have; none where its keys have no curves: the first is a word or the seed, or
+/// more than two vary independently.
+std::vector<std::string> files_of_curves(const SweepPlan& plan);
+
+/// Draws each main quantity that some point has against the first key: one line for each value of the second; of
+/// several seeds the points and their mean. Points that are not stable are open and left out of the mean.
+/// \param title of the plots; empty: what is varied
+/// \throws Error (bad_input) as write_plot
+void write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
+                  const std::string& title);
 
 }  // namespace equidem

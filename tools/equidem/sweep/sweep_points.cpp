@@ -1,65 +1,224 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sweep/sweep_table.hpp"
+#include "sweep/sweep_points.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <utility>
 
+#include "equidem/casefile/assembly/case.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/page/page.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 namespace equidem {
 namespace {
 
+constexpr std::size_t most_points = 1000000;
+
+/// Before the memory for them is taken.
+void check_points(double points) {
+  constexpr double bytes_a_point = 1000, fastest = 1e-3;  // of the table in memory; s
+  if (points <= static_cast<double>(most_points)) return;
+  bad_input(fmt::format("the sweep has {:.3g} points", points),
+            fmt::format("the table alone would take {}, and at a millisecond for each they take {:.2g} hours",
+                        readable_bytes(points * bytes_a_point), points * fastest / 3600),
+            fmt::format("Give at most {} points: fewer values, or --list", grouped(std::int64_t{most_points})));
+}
+
+/// A whole number without a point, so that integer keys take it.
+std::string number_text(double value) {
+  constexpr double exact = 1e15;
+  return value == std::floor(value) && std::abs(value) < exact ? fmt::format("{:.0f}", value + 0.0)
+                                                               : toml_number(value);
+}
+
+/// A number as it is written in tables, or a word of the case file, "cholmod", "true", "none", "../a.json".
+std::string value_from(std::string_view part, const std::string& list) {
+  if (const auto whole = number_from<std::int64_t>(part)) return fmt::format("{}", *whole);
+  if (const std::optional<double> number = number_from<double>(part)) {
+    if (std::isfinite(*number)) return number_text(*number);
+  } else if (!part.empty()) {
+    const char first = part.front();
+    const bool begins_as_word = std::isalpha(static_cast<unsigned char>(first)) != 0 || first == '.' || first == '/';
+    const bool one_word = std::ranges::none_of(part, [](char c) {
+      const auto byte = static_cast<unsigned char>(c);
+      return byte <= ' ' || byte == 0x7f || std::string_view("=[]{}\"'").find(c) != std::string_view::npos;
+    });
+    if (begins_as_word && one_word) return std::string(part);
+  }
+  bad_input_at(
+      "--values",
+      part.empty() ? fmt::format("a value is missing in '{}'", list) : fmt::format("'{}' is among the values", part),
+      "a sweep takes finite numbers, words, true and false", "Leave it out, or correct it");
+}
+
+std::vector<std::string> values_of_range(double from, double to, int steps) {
+  std::vector<std::string> values;
+  const int intervals = steps - 1;
+  for (int k = 0; k < steps; ++k) {
+    const double value = intervals == 0 ? from : (from * (intervals - k) + to * k) / intervals;
+    // The decimal number that is meant, 0.3 and not 0.30000000000000004; and a spring that is absent, not one
+    // that is almost absent.
+    const double rounding = 1e-13 * std::max(std::abs(from), std::abs(to));
+    const double meant = std::abs(value) <= rounding ? 0 : *number_from<double>(fmt::format("{:.12g}", value));
+    if (!std::isfinite(meant))
+      bad_input("the values from --from to --to overflow", "a sweep needs finite numbers", "Give smaller ones");
+    values.push_back(number_text(meant));
+  }
+  return values;
+}
+
+SweptKey swept_key(const KeyOptions& given) {
+  if (given.name.empty()) bad_input("values are given without a key", "they would vary nothing", "Add --key KEY");
+  if (given.name == SweepPlan::seed)
+    bad_input("'seed' is not a key of a case", "assemblies and packings have seeds of their own", "Use --seeds");
+  const bool range = given.from && given.to;
+  if (range == !given.values.empty() || given.from.has_value() != given.to.has_value()) {
+    bad_input(given.values.empty() ? fmt::format("the key {} is given no values", given.name)
+                                   : fmt::format("the key {} is given a list of values and a range", given.name),
+              given.values.empty() ? "nothing would vary" : "a key takes one of the two",
+              "Give --values a,b,c or --from A --to B --steps N");
+  }
+  SweptKey key{.name = given.name, .unit = unit_of_case_key(given.name).value_or(""), .values = {}};
+  if (range) key.values = values_of_range(*given.from, *given.to, given.steps);
+  for (const std::string& list : given.values)
+    for (const std::string_view part : parts_of(list, ',')) key.values.push_back(value_from(part, list));
+  if (given.name == "ratio" && !key.numeric()) {
+    const auto word = std::ranges::find_if(key.values, [](const auto& value) { return !number_from<double>(value); });
+    bad_input_at("--values", fmt::format("'{}' is among the values of ratio", *word), "it is kT/kN, a number",
+                 "Leave it out, or correct it");
+  }
+  return key;
+}
+
+SweptKey swept_seeds(const std::vector<std::string>& lists) {
+  SweptKey key{.name = SweepPlan::seed, .unit = {}, .values = {}};
+  for (const std::string& list : lists) {
+    for (const std::string_view part : parts_of(list, ',')) {
+      const std::size_t dash = part.find('-');
+      const auto first = number_from<std::int64_t>(part.substr(0, dash));
+      const auto last = dash == std::string_view::npos ? first : number_from<std::int64_t>(part.substr(dash + 1));
+      if (!first || !last || *first < 0 || *last < *first)
+        bad_input_at("--seeds", fmt::format("'{}' is among the seeds", part),
+                     fmt::format("a seed is a whole number from 0 to {}, a range two of them",
+                                 std::numeric_limits<std::int64_t>::max()),
+                     "Write --seeds 1,2,3 or --seeds 1-3");
+      const auto count = static_cast<std::size_t>(*last - *first) + 1;
+      check_points(static_cast<double>(key.values.size()) + static_cast<double>(count));
+      for (std::size_t k = 0; k < count; ++k)
+        key.values.push_back(fmt::format("{}", *first + static_cast<std::int64_t>(k)));
+    }
+  }
+  return key;
+}
+
+void check_lists(const SweepPlan& plan) {
+  const SweptKey& first = plan.keys.front();
+  for (const SweptKey& key : plan.keys) {
+    if (!plan.side_by_side || key.name == SweepPlan::seed || key.values.size() == first.values.size()) continue;
+    bad_input(fmt::format("{} takes {} and {} takes {}", first.name, counted(std::ssize(first.values), "value"),
+                          key.name, key.values.size()),
+              "with --list they stand side by side",
+              "Give as many to each key, or leave out --list for all combinations");
+  }
+}
+
+/// [springs] with kT at the given ratio to kN, whatever file they were read from.
+std::string springs_of_ratio(const TomlValue& base, const std::string& ratio) {
+  const TomlValue& springs = *base.find("springs");
+  const double kT = *number_from<double>(ratio) * springs.find("kN")->real;
+  std::string entries;
+  for (const TomlEntry& entry : springs.entries) {
+    const TomlValue& value = entry.value;
+    entries += fmt::format("{}{} = {}", entries.empty() ? "" : ", ", entry.name,
+                           entry.name == "kT"  ? toml_number(kT)
+                           : value.is_number() ? toml_number(value.real)
+                                               : toml_text(value.text));
+  }
+  return fmt::format("springs={{{}}}", entries);
+}
+
+}  // namespace
+
+bool SweptKey::numeric() const {
+  return std::ranges::all_of(values, [](const std::string& value) { return number_from<double>(value).has_value(); });
+}
+
+ResultValue SweptKey::shown(const std::string& value) {
+  if (const auto whole = number_from<std::int64_t>(value)) return *whole;
+  if (const auto number = number_from<double>(value)) return *number;
+  return value;
+}
+
+double SweepPlan::points() const {
+  double points = 1;
+  for (const SweptKey& key : keys)
+    if (!side_by_side || &key == keys.data() || key.name == seed) points *= static_cast<double>(key.values.size());
+  return points;
+}
+
+std::vector<std::string> SweepPlan::values_of(std::size_t point) const {
+  std::vector<std::string> values(keys.size());
+  for (std::size_t k = keys.size(); k-- > 0;) {
+    const std::size_t count = keys[k].values.size();
+    values[k] = keys[k].values[point % count];
+    if (!side_by_side || keys[k].name == seed) point /= count;
+  }
+  return values;
+}
+
+std::string SweepPlan::names() const {
+  return joined(keys, &SweptKey::name);
+}
+
+SweepPlan sweep_plan(const std::string& verb, const std::vector<KeyOptions>& keys,
+                     const std::vector<std::string>& seeds, bool side_by_side) {
+  SweepPlan plan{.verb = verb, .keys = {}, .side_by_side = side_by_side};
+  std::ranges::transform(keys, std::back_inserter(plan.keys), swept_key);
+  if (!seeds.empty()) plan.keys.push_back(swept_seeds(seeds));
+  if (plan.keys.empty())
+    bad_input("the sweep varies nothing", "neither --key nor --seeds is given",
+              "Give --key K --values a,b,c, or --seeds 1-5");
+  std::set<std::string> names;
+  for (const SweptKey& key : plan.keys)
+    if (!names.insert(key.name).second)
+      bad_input(fmt::format("the key {} is given twice", key.name), "one point has one value of it",
+                "Put all its values into one --values");
+  check_lists(plan);
+  check_points(plan.points());
+  return plan;
+}
+
+std::vector<std::string> options_of(const SweepPlan& plan, const std::vector<std::string>& values,
+                                    const TomlValue& base) {
+  std::vector<std::string> options;
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    const std::string &name = plan.keys[k].name, &value = values[k];
+    const bool bare = number_from<double>(value) || value == "true" || value == "false" || value == "none";
+    if (name == SweepPlan::seed) {
+      options.insert(options.end(), {"--seed", value});
+    } else if (name == "ratio") {
+      options.insert(options.end(), {"--set", springs_of_ratio(base, value)});
+    } else {
+      options.insert(options.end(), {"--set", fmt::format("{}={}", name, bare ? value : toml_text(value))});
+    }
+  }
+  return options;
+}
+
+namespace {
+
 constexpr const char* number_name = "point";
 constexpr const char* label_of_number = "number of the point";
-
-const MainQuantity all_main_quantities[] = {
-    {"solve", "poisson_ratio", "nu", "Poisson's ratio ν (plane strain)", "theory/poisson_ratio"},
-    {"solve", "stiffness_ratio", "2G/((1-nu)kN)", "2G/((1 - ν) k_N)", "theory/stiffness_ratio"},
-    {"solve", "theory/poisson_ratio", "nu theory"},
-    {"solve", "theory/stiffness_ratio", "2G/((1-nu)kN) theory"},
-    {"solve", "plane_strain/young_modulus", "E strain", "Young's modulus E (plane strain), Pa"},
-    {"solve", "energy", "energy"},
-    {"solve", "relative_residual", "residual", "", "", {Shown::power, 1}},
-    {"solve", "unstable_modes", "unstable"},
-    {"homogenize", "young_modulus/plane_strain", "E strain", "Young's modulus E (plane strain), Pa"},
-    {"homogenize", "poisson_ratio/plane_strain", "nu strain", "Poisson's ratio ν (plane strain)"},
-    {"homogenize", "bulk_modulus_2d", "K"},
-    {"homogenize", "shear_modulus", "G", "shear modulus G, Pa"},
-    {"homogenize", "anisotropy", "anisotropy", "", "", {Shown::number, 3}},
-    {"homogenize", "ensemble/0/bulk_modulus_2d/mean", "mean K", "bulk modulus K, mean of the ensemble, Pa"},
-    {"homogenize", "ensemble/0/shear_modulus/mean", "mean G", "shear modulus G, mean of the ensemble, Pa"},
-    {"calibrate", "kN", "kN", "k_N, Pa"},
-    {"calibrate", "kT", "kT"},
-    {"calibrate", "ratio", "kT/kN", "k_T/k_N"},
-    {"calibrate", "achieved/relative_error", "relative error", "", "", {Shown::power, 1}},
-    {"stability", "critical_ratio", "critical kT/kN", "critical k_T/k_N"},
-    {"stability", "omega_max", "omega_max"},
-    {"stability", "critical_time_step", "critical step", "critical time step, s"},
-    {"pack", "solid_fraction", "solid fraction", "solid fraction"},
-    {"pack", "void_ratio", "void ratio", "void ratio"},
-    {"pack", "coordination_number", "z", "mean number of contacts"},
-    {"pack", "rattlers", "rattlers"},
-    {"pack", "bonds", "bonds"},
-    {"run", "waves/*/speed", "speed of *", "speed of wave *, m/s", "waves/*/theory/speed"},
-    {"run", "waves/*/speed_over_theory", "over theory", "speed of wave * over that of theory"},
-    {"run", "plane_strain/young_modulus", "E strain", "Young's modulus E (plane strain), Pa"},
-    {"run", "plane_strain/poisson_ratio", "nu strain", "Poisson's ratio ν (plane strain)"},
-    {"run", "steps", "steps"},
-    {"run", "time_step", "time step"},
-    {"run", "energy/kinetic", "kinetic energy", "kinetic energy"},
-    {"run", "energy/dissipated", "lost energy", "energy lost"},
-    {"run", "energy/relative_error", "energy error", "", "", {Shown::power, 1}},
-    {"run", "measures/void_ratio/after", "void ratio", "void ratio at the end"},
-    {"run", "relative_unbalanced_force", "unbalanced force", "", "", {Shown::power, 1}},
-};
 
 std::string key_column(const SweptKey& key) {
   return column_name(key.name, key.unit.substr(0, key.unit.find_first_of(" ,;(")));
@@ -91,17 +250,16 @@ double SweepPoint::at(std::string_view path) const {
   return found == nullptr ? unknown : number_from<double>(found->text).value_or(unknown);
 }
 
-std::vector<MainQuantity> main_quantities(const SweepPlan& plan) {
-  std::vector<MainQuantity> found;
-  for (const MainQuantity& quantity : all_main_quantities) {
-    if (quantity.verb != plan.verb) continue;
+std::vector<ShownNumber> main_quantities(const SweepPlan& plan) {
+  std::vector<ShownNumber> found;
+  for (const ShownNumber& quantity : numbers_shown_of(plan.verb, "sweep")) {
     if (quantity.path.find('*') == std::string::npos) {
       found.push_back(quantity);
       continue;
     }
     for (const std::string& wave : plan.waves) {
-      MainQuantity own = quantity;
-      for (std::string* text : {&own.path, &own.heading, &own.axis, &own.theory})
+      ShownNumber own = quantity;
+      for (std::string* text : {&own.path, &own.label, &own.axis, &own.theory})
         if (const std::size_t at = text->find('*'); at != std::string::npos)
           text->replace(at, 1, text == &own.axis ? literal(wave) : wave);
       found.push_back(std::move(own));
@@ -158,8 +316,8 @@ std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, con
 }
 
 std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoint> points) {
-  std::vector<std::pair<MainQuantity, std::string>> shown;  // with their units
-  for (const MainQuantity& quantity : main_quantities(plan)) {
+  std::vector<std::pair<ShownNumber, std::string>> shown;  // with their units
+  for (const ShownNumber& quantity : main_quantities(plan)) {
     const auto known = std::ranges::find_if(points, [&](const SweepPoint& point) { return point.find(quantity.path); });
     if (known != points.end()) shown.emplace_back(quantity, known->find(quantity.path)->unit);
   }
@@ -175,7 +333,7 @@ std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoin
     }
     row.add("status", "status", point.status);
     for (const auto& [quantity, unit] : shown)
-      if (!point.failed()) row.add("", quantity.heading, point.at(quantity.path), unit, quantity.shown);
+      if (!point.failed()) row.add("", quantity.label, point.at(quantity.path), unit, quantity.shown);
     for (const ScalarNumber& number : point.numbers) {
       const auto meaning = meaning_of(number.path);
       row.set(number.path, SweptKey::shown(number.text), number.unit, meaning ? meaning->label : "");
@@ -207,7 +365,7 @@ struct Curve {
 
 /// Curves by the value of the second key, in the order of its values; "" where there is none.
 std::vector<std::pair<std::string, Curve>> curves_of(const SweepPlan& plan, std::span<const SweepPoint> points,
-                                                     const MainQuantity& quantity) {
+                                                     const ShownNumber& quantity) {
   const bool several = !plan.side_by_side && plan.keys_of_case() == 2;
   std::vector<std::pair<std::string, Curve>> curves;
   for (const std::string& value : several ? plan.keys[1].values : std::vector<std::string>{""})
@@ -279,25 +437,25 @@ void add_points(Plot& plot, const Curve& curve, const std::string& which, const 
                  .column = column("unstable")}));
 }
 
-std::string plot_name_of(const MainQuantity& quantity) {
+std::string plot_name_of(const ShownNumber& quantity) {
   std::string name = quantity.path;
   std::ranges::replace(name, '/', '_');
   return name;
 }
 
-std::vector<MainQuantity> drawn(const SweepPlan& plan) {
+std::vector<ShownNumber> drawn(const SweepPlan& plan) {
   const bool curves =
       plan.keys_of_case() > 0 && plan.keys.front().numeric() && (plan.side_by_side || plan.keys_of_case() <= 2);
-  std::vector<MainQuantity> quantities = curves ? main_quantities(plan) : std::vector<MainQuantity>{};
+  std::vector<ShownNumber> quantities = curves ? main_quantities(plan) : std::vector<ShownNumber>{};
   // The energies of a wave sway: those at the end of the run say nothing.
-  std::erase_if(quantities, [&](const MainQuantity& quantity) {
+  std::erase_if(quantities, [&](const ShownNumber& quantity) {
     return quantity.axis.empty() || (!plan.waves.empty() && quantity.path.starts_with("energy/"));
   });
   return quantities;
 }
 
 /// Whether the quantity is known at two values of the first key, since one point makes no curve, and not 0 throughout.
-bool has_curve(std::span<const SweepPoint> points, const MainQuantity& quantity) {
+bool has_curve(std::span<const SweepPoint> points, const ShownNumber& quantity) {
   std::set<std::string> values;
   bool any = false;
   for (const SweepPoint& point : points) {
@@ -309,7 +467,7 @@ bool has_curve(std::span<const SweepPoint> points, const MainQuantity& quantity)
 }
 
 /// The axis with the unit of the results, where it does not name one.
-std::string axis_label(std::span<const SweepPoint> points, const MainQuantity& quantity) {
+std::string axis_label(std::span<const SweepPoint> points, const ShownNumber& quantity) {
   for (const SweepPoint& point : points) {
     const ScalarNumber* const number = point.find(quantity.path);
     if (number == nullptr || number->unit.empty()) continue;
@@ -321,16 +479,17 @@ std::string axis_label(std::span<const SweepPoint> points, const MainQuantity& q
 
 }  // namespace
 
-std::vector<std::string> curve_names(const SweepPlan& plan) {
+std::vector<std::string> files_of_curves(const SweepPlan& plan) {
   std::vector<std::string> names;
-  for (const MainQuantity& quantity : drawn(plan)) names.push_back(plot_name_of(quantity));
+  for (const ShownNumber& quantity : drawn(plan))
+    std::ranges::move(plot_files(plot_name_of(quantity)), std::back_inserter(names));
   return names;
 }
 
 void write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
                   const std::string& title) {
   const bool seeds = plan.has_seeds() && plan.keys.back().values.size() > 1;
-  for (const MainQuantity& quantity : drawn(plan)) {
+  for (const ShownNumber& quantity : drawn(plan)) {
     if (!has_curve(points, quantity)) continue;
     Plot plot{.title = title.empty() ? joined(plan.keys, name_of_key) + " varied" : literal(title),
               .x = {.label = axis_label(plan.keys.front())},

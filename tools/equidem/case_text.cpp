@@ -1,20 +1,67 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/case_text.hpp"
+#include "case_text.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <span>
 #include <system_error>
+#include <utility>
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
+namespace {
 
-void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names) {
-  std::erase_if(table.entries,
-                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.name) != names.end(); });
+void erase_key(TomlValue& table, std::string_view name) {
+  std::erase_if(table.entries, [&](const TomlEntry& entry) { return entry.name == name; });
+}
+
+}  // namespace
+
+TomlValue deciding_tables(TomlValue document, Decided result) {
+  constexpr auto of = [](Decided one) { return 1U << static_cast<unsigned>(one); };
+  constexpr unsigned assembly = of(Decided::assembly), bonded = of(Decided::bonded_motion),
+                     colliding = of(Decided::colliding_motion), path = of(Decided::path),
+                     all = assembly | bonded | colliding | path;
+  // Tables, and keys of tables, each with the results that it does not decide; what is not listed decides all. Steps,
+  // schedules and stages have parts of their own in the case texts of runs.
+  constexpr std::pair<std::string_view, unsigned> undeciding[] = {{"title", all},
+                                                                  {"output", all},
+                                                                  {"homogenize", all},
+                                                                  {"ensemble", all},
+                                                                  {"strength_target", all},
+                                                                  {"solver", assembly | bonded},
+                                                                  {"effects", assembly},
+                                                                  {"viscoelastic", assembly},
+                                                                  {"strength", assembly | bonded},
+                                                                  {"strain", assembly | bonded},
+                                                                  {"dead_load", assembly | bonded},
+                                                                  {"notch", assembly | bonded},
+                                                                  {"quasistatic", assembly | bonded},
+                                                                  {"quasistatic.max_events", path},
+                                                                  {"quasistatic.frame_every", path},
+                                                                  {"run", assembly | path},
+                                                                  {"run.duration", bonded | colliding},
+                                                                  {"run.time_step", bonded | colliding},
+                                                                  {"run.allow_unstable_step", bonded},
+                                                                  {"run.steps_per_contact", colliding},
+                                                                  {"schedule", assembly | path | colliding},
+                                                                  {"wall", assembly | path},
+                                                                  {"velocity", path},
+                                                                  {"probe", path | colliding},
+                                                                  {"measures", colliding},
+                                                                  {"stage", colliding}};
+  for (const auto& [name, results] : undeciding) {
+    if ((results & of(result)) == 0) continue;
+    const std::size_t dot = name.find('.');
+    TomlValue* const table = dot == std::string_view::npos ? &document : document.find(name.substr(0, dot));
+    if (table != nullptr) erase_key(*table, name.substr(dot + 1));
+  }
+  const auto is_empty = [](const TomlEntry& entry) { return entry.value.is_table() && entry.value.entries.empty(); };
+  std::erase_if(document.entries, is_empty);
+  return document;
 }
 
 void add(Checksum& sum, const Schedule& schedule) {
@@ -113,17 +160,15 @@ std::string checksum_of(const GrainCase& resolved, std::size_t stage, std::size_
 }  // namespace
 
 std::string case_text_of(const GrainCase& resolved, double step) {
-  TomlValue known = resolved.document, schedules;
-  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
+  TomlValue schedules;
   schedules.type = TomlValue::Type::table;
-  if (const TomlValue* given = known.find("schedule")) schedules.entries.push_back({"schedule", *given});
-  erase_keys(known, {"title", "output", "probe", "measures", "schedule", "stage"});
-  std::string text = to_toml(std::move(known), {}) +
+  if (const TomlValue* given = resolved.document.find("schedule")) schedules.entries.push_back({"schedule", *given});
+  std::string text = to_toml(deciding_tables(resolved.document, Decided::colliding_motion), {}) +
                      fmt::format("{}{} s{}{}\n", step_line, toml_number(step), checksum_line, checksum_of(resolved));
   std::size_t bodies = resolved.scene.grains.size();
   for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
     TomlValue stage = casefile::repeated(resolved.document, "stage")[k];
-    if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
+    if (stage.find("until") != nullptr) erase_key(stage, "duration"), erase_key(stage, "steps");  // a limit alone
     text += fmt::format("{}{}\n{}{}{}\n", stage_heading, resolved.stages[k].name, to_toml(std::move(stage), {}),
                         checksum_line, checksum_of(resolved, k, bodies));
     bodies += resolved.stages[k].bodies.added.size();

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Contacts: their springs, stiffness and strengths; collisions of two bodies.
+#include <array>
+#include <cstdint>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <pybind11/stl.h>
 
@@ -13,8 +19,11 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/grains/grain_simulation.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/material/inertia.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 #include "module.hpp"
@@ -110,15 +119,88 @@ py::tuple strength_of(const StrengthSample& sample, const std::string& kind, dou
   return py::make_tuple(found.stress, found.events, found.energy_error);
 }
 
+/// Equal spheres of density 1 kg/m³ over a floor at y = 0.
+class Spheres {
+ public:
+  Spheres(const Floats& centres, const Floats& velocities, double radius, const std::string& law, double stiffness,
+          double restitution, bool pulls, double gravity, double time_step, bool refuse_crossing)
+      : simulation_(scene_of(centres, velocities, radius, stiffness, restitution, pulls, gravity),
+                    {.law = enum_from<NormalLaw>(law), .time_step = time_step, .refuse_crossing = refuse_crossing}) {}
+
+  void advance(std::int64_t steps) { simulation_.advance(steps); }
+  [[nodiscard]] std::int64_t step() const { return simulation_.step(); }
+  /// [x, y, v_x, v_y] of a sphere.
+  [[nodiscard]] std::array<double, 4> sphere(std::size_t k) const {
+    const Grain grain = simulation_.grains().at(k);
+    return {grain.position.x, grain.position.y, grain.velocity.x, grain.velocity.y};
+  }
+  /// (i, j) of the contacts of the last step; j < 0: the floor.
+  [[nodiscard]] std::vector<std::pair<std::int32_t, std::int32_t>> contacts() const {
+    std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+    for (const GrainContact& contact : simulation_.contacts()) pairs.emplace_back(contact.i, contact.j);
+    return pairs;
+  }
+  [[nodiscard]] const GrainCounters& counters() const { return simulation_.counters(); }
+
+ private:
+  static GrainScene scene_of(const Floats& centres, const Floats& velocities, double radius, double stiffness,
+                             double restitution, bool pulls, double gravity) {
+    GrainScene scene;
+    scene.walls.emplace_back();
+    scene.gravity = {0, -gravity};
+    scene.pairs = {PairProperties{.dimensionless = stiffness,
+                                  .restitution = restitution,
+                                  .end = pulls ? ContactEnd::at_zero_overlap : ContactEnd::at_zero_force}};
+    for (py::ssize_t k = 0; k < centres.shape(0); ++k) {
+      scene.grains.push_back({.position = {centres.at(k, 0), centres.at(k, 1)},
+                              .radius = radius,
+                              .inertia = inertia_of(radius, 1, Body::sphere),
+                              .velocity = {velocities.at(k, 0), velocities.at(k, 1)}});
+    }
+    return scene;
+  }
+
+  GrainSimulation simulation_;
+};
+
 }  // namespace
 
-void bind_springs(py::module_& module) {
+void bind_contacts(py::module_& module) {
   py::class_<StrengthSample>(module, "StrengthSample", made_here())
       .def("strength", strength_of)
       .def_property_readonly("width", &StrengthSample::width);
   module.def("strength_sample", strength_sample);
   module.def("springs_at_contacts", springs_at_contacts);
   module.def("stiffness_matrix", stiffness_matrix);
+  py::class_<GrainCounters>(module, "GrainCounters", made_here())
+      .def_readonly("evaluations", &GrainCounters::evaluations)
+      .def_readonly("contacts", &GrainCounters::contacts)
+      .def_readonly("sweeps", &GrainCounters::sweeps);
+  py::class_<Spheres>(module, "Spheres")
+      .def(py::init<const Floats&, const Floats&, double, const std::string&, double, double, bool, double, double,
+                    bool>(),
+           py::arg("centres"), py::arg("velocities"), py::arg("radius"), py::arg("law"), py::arg("stiffness"),
+           py::arg("restitution"), py::arg("pulls"), py::arg("gravity"), py::arg("time_step"),
+           py::arg("refuse_crossing"))
+      .def("advance", &Spheres::advance)
+      .def("sphere", &Spheres::sphere)
+      .def("contacts", &Spheres::contacts)
+      .def_property_readonly("step", &Spheres::step)
+      .def_property_readonly("counters", [](const Spheres& spheres) { return spheres.counters(); });
+  py::class_<Random>(module, "Random")
+      .def(py::init<std::uint64_t>(), py::arg("seed"))
+      .def("uniforms",
+           [](Random& random, std::size_t count) {
+             std::vector<double> numbers(count);
+             for (double& number : numbers) number = random.uniform();
+             return numbers;
+           })
+      .def("order", [](Random& random, std::size_t count) {
+        std::vector<std::size_t> order(count);
+        std::iota(order.begin(), order.end(), 0);
+        for (std::size_t k = count; k > 1; --k) std::swap(order[k - 1], order[random.below(k)]);
+        return order;
+      });
 }
 
 }  // namespace equidem::python
