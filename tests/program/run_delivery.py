@@ -257,7 +257,7 @@ class Interrupted(ProgramTest):
     def test_load_cases_solved_until_an_interruption_are_delivered(self):
         case = self.folder / "loads.toml"
         case.write_text((CASES / "cantilever.toml").read_text() + "".join(
-            f'[[load]]\ncase = "pull {k}"\ngroup = "right"\nkind = "traction"\nforce = [0.0, {k + 1}.0]\n' for k in range(200)))
+            f'[[load]]\ncase = "pull_{k}"\ngroup = "right"\nkind = "traction"\nforce = [0.0, {k + 1}.0]\n' for k in range(200)))
         result, report, out = self.part_of("solve", case, "--set", "assembly.columns=200", "--set", "assembly.rows=60")
         done = len(result["load_cases"])
         self.assertIn(f"{done} of 202 load cases are done", result["failure"])

@@ -695,8 +695,8 @@ int calibrate(const CalibrateVerb& options) {
   std::optional<MeanFieldGuess> guess;
   if (converged) failure = failure_of([&] { guess = mean_field_guess(problem.assembly, wanted, how); });
   if (converged && failure)
-    failure.emplace(failure->kind(), failure->problem(), "the springs are found, and not compared with the mean field",
-                    "");
+    failure =
+        Error(failure->kind(), failure->problem(), "the springs are found, and not compared with the mean field", "");
   times.add("mean field", watch.lap());
   const StopsHeldBack held_back(failure);
   problem.springs = {

@@ -264,7 +264,7 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
       if (failure && results.empty()) throw Error(*failure);
       if (!failure) continue;
       const std::string why = failure->why().empty() ? "" : failure->why() + "; ";
-      failure.emplace(failure->kind(), failure->problem(),
+      failure = Error(failure->kind(), failure->problem(),
                       fmt::format("{}{} of {} load cases are done", why, results.size(), problem.load_cases.size()),
                       failure->remedy(), failure->where());
       break;
