@@ -19,26 +19,6 @@ namespace {
 constexpr std::size_t most_discs_of_antiperiodic = 20000;
 constexpr double no_critical_ratio = -std::numeric_limits<double>::infinity();
 
-const char* name_of(StabilityStage stage) {
-  switch (stage) {
-    case StabilityStage::inertia:
-      return "inertia";
-    case StabilityStage::critical_load:
-      return "critical load";
-    case StabilityStage::time_step:
-      return "time step";
-    case StabilityStage::natural_frequencies:
-      return "natural frequencies";
-    case StabilityStage::waves:
-      return "waves";
-    case StabilityStage::continuum:
-      return "homogenized continuum";
-    case StabilityStage::critical_ratio:
-      break;
-  }
-  return "critical kT/kN";
-}
-
 std::optional<double> common_ratio(const Assembly& assembly, const ContactSprings& springs) {
   const double first = springs[0].ratio();
   for (std::size_t c = 1; !springs.uniform() && c < assembly.contacts.size(); ++c)
@@ -262,7 +242,7 @@ Stability analyze_stability(const Assembly& assembly, const ContactSprings& spri
     find_stages(assembly, springs, supports, inertia, options, s);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::bad_input) throw;
-    throw ErrorWith(error, fmt::format("found as far as the {}", name_of(s.reached)), std::move(s));
+    throw ErrorWith(error, fmt::format("found as far as the {}", to_string(s.reached)), std::move(s));
   }
   return s;
 }

@@ -12,6 +12,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/inertia.hpp"
@@ -34,6 +35,19 @@ struct StabilityOptions {
 
 /// In the order in which they are found; what an assembly does not have is left out.
 enum class StabilityStage { inertia, critical_load, time_step, natural_frequencies, waves, continuum, critical_ratio };
+
+template <>
+struct EnumNames<StabilityStage> {
+  using enum StabilityStage;
+  static constexpr const char* what = "stage of stability";
+  static constexpr NamedValue<StabilityStage> list[] = {{inertia, "inertia"},
+                                                        {critical_load, "critical load"},
+                                                        {time_step, "time step"},
+                                                        {natural_frequencies, "natural frequencies"},
+                                                        {waves, "waves"},
+                                                        {continuum, "homogenized continuum"},
+                                                        {critical_ratio, "critical kT/kN"}};
+};
 
 /// The critical ratio and the motion that loses its stiffness there.
 struct CriticalMotion {

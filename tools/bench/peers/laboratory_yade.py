@@ -2,8 +2,8 @@
 # yade -n -x -j1 laboratory_yade.py TEST SAMPLE STEP [MORE...]
 # A test of the laboratory in YADE, with the discs of a case (CSV: x,y,radius,...), its springs, stages and time step STEP (s). Tests and
 # what they want MORE: biaxial (left, bottom, right, top of a sample at rest; none: a loose one), shear_box (height of the lid of a sample
-# at rest), repose (friction, and rolling friction where there is some), hopper, unconfined and brazilian (CSV of the bonds, i,j), beam. Discs are spheres in a plane with the
-# masses and moments of discs. Prints one line of JSON.
+# at rest), repose (friction, and rolling friction where there is some), hopper, unconfined and brazilian (CSV of the bonds, i,j), beam.
+# Discs are spheres in a plane with the masses and moments of discs. Prints one line of JSON.
 import csv
 import json
 import math

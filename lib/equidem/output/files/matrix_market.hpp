@@ -12,7 +12,7 @@
 
 namespace equidem {
 
-/// Of the file of a symmetric matrix.
+/// Returns the bytes of the file of a symmetric matrix, about.
 double bytes_of_text(const CompressedColumns& lower);
 
 /// A symmetric matrix by its lower triangle: "coordinate real symmetric".
