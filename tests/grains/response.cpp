@@ -94,8 +94,8 @@ void respond_from(Contacts& c, std::size_t k) {
                                     at(slip),          at(mobility),     at(mean_slip)};
   ContactMemory<Lanes> memory{at(impulse), at(tangential), at(stretch), {}};
   EffectLanes<Lanes> none;
-  const auto losses =
-      respond<Law, kind>(law, dt * at(dashpot), dt * at(slip_dashpot), motion, changes, dt, none, memory);
+  ContactLosses<Lanes> losses{};
+  respond<Law, kind>(law, dt * at(dashpot), dt * at(slip_dashpot), motion, changes, dt, none, memory, losses);
   const auto set = [&](Number n, const Lanes& lanes) { store(lanes, c.of[n] + k); };
   set(impulse, memory.impulse), set(tangential, memory.tangential), set(stretch, memory.stretch);
   set(slip_loss, losses.slip), set(dashpot_loss, losses.dashpot);

@@ -168,14 +168,12 @@ EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, cons
     effect_lanes.rolling = rolling_lanes(*effects, rolling_velocity<kind, Lanes>(bodies, group, *effects), numbers.dt);
     memory.rolling = rolling_memory<Lanes>(*effects);
   }
-  const ContactLosses<Lanes> losses = respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot),
-                                                         slip_dashpot, motion, at, numbers.dt, effect_lanes, memory);
-  if constexpr (kind.friction) {
-    outcome.losses = losses;
-    outcome.changes = at.any;
-  } else {
-    add_losses<kind>(losses, Lanes{}, at.any, sums);
-  }
+  ContactLosses<Lanes> added_here{};
+  ContactLosses<Lanes>& losses = kind.friction ? outcome.losses : added_here;
+  respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot), slip_dashpot, motion, at, numbers.dt,
+                     effect_lanes, memory, losses);
+  outcome.changes = at.any;
+  if constexpr (!kind.friction) add_losses<kind>(losses, Lanes{}, at.any, sums);
   store(memory.impulse, group.impulse);
   outcome.px = memory.impulse * geometry.nx;
   outcome.py = memory.impulse * geometry.ny;

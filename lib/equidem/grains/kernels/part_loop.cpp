@@ -264,9 +264,9 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const LoopNumbers<Lanes>& numbers, Grai
     memory.rolling = rolling_memory<Lanes>(*of.effects);
     couple_before = lever * memory.rolling.impulse;
   }
-  const ContactLosses<Lanes> losses =
-      respond<Law, kind.response>(law_of<kind.response>(numbers, &of.laws), load<Lanes>(of.group.dashpot), slip_dashpot,
-                                  motion, at, dt, effect_lanes, memory);
+  ContactLosses<Lanes> losses{};
+  respond<Law, kind.response>(law_of<kind.response>(numbers, &of.laws), load<Lanes>(of.group.dashpot), slip_dashpot,
+                              motion, at, dt, effect_lanes, memory, losses);
   add_losses<kind.response>(losses, effect_lanes.rolling.lost, at.any, sums);
   const Vectors<Lanes> n = found.normal, t = perpendicular(n);
   Vectors<Lanes> push = memory.impulse * n;

@@ -154,12 +154,13 @@ struct ContactLosses : SpringLosses<Lanes> {
 /// \param slip_dashpot tangential, times dt, kg
 /// \param[in,out] effects used where the kind has some
 /// \param[in,out] memory of the contacts
+/// \param[out] losses in place: compilers copy a struct of lanes piece by piece
 template <class Law, ResponseKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, const Lanes& dashpot,
-                                                   const Lanes& slip_dashpot, const ContactMotion<Lanes>& motion,
-                                                   const ContactChanges<Lanes>& near, double dt,
-                                                   EffectLanes<Lanes>& effects, ContactMemory<Lanes>& memory) {
-  ContactLosses<Lanes> losses{};
+EQUIDEM_ALWAYS_INLINE void respond(const LawLanes<Lanes>& law, const Lanes& dashpot, const Lanes& slip_dashpot,
+                                   const ContactMotion<Lanes>& motion, const ContactChanges<Lanes>& near, double dt,
+                                   EffectLanes<Lanes>& effects, ContactMemory<Lanes>& memory,
+                                   ContactLosses<Lanes>& losses) {
+  losses.released = Lanes{};
   ContactChanges<Lanes> at = near;
   Lanes before = memory.impulse;  // of spring and dashpot
   if constexpr (kind.cohesion) {
@@ -193,7 +194,6 @@ EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, c
   } else {
     memory.tangential = Lanes{};  // the friction of an earlier stage may have left one
   }
-  return losses;
 }
 
 /// Add the losses of eight contacts.
