@@ -52,7 +52,7 @@ void Ranks::together(const std::function<void()>& work) const {
   } catch (const Error& error) {
     mine = error;
   } catch (const std::bad_alloc&) {
-    mine = Error(ErrorKind::computation_failed, "there is too little memory", fmt::format("on rank {}", rank_),
+    mine = Error(ErrorKind::out_of_memory, "there is too little memory", fmt::format("on rank {}", rank_),
                  "Use fewer discs, or more machines");
   }
   int failed = mine ? rank_ : count_;

@@ -104,7 +104,7 @@ PartEquilibrium solve_loads(const Network& network, PetscSolver& solver, const L
   state.solver = solver.name();
   state.factor_bytes = solver.grid_bytes();
   state.unknowns = network.free_count;
-  state.negative_pivots = state.unstable_modes = network.any_negative ? -1 : 0;
+  if (network.any_negative) state.negative_pivots = state.unstable_modes = std::nullopt;
   return result;
 }
 
@@ -289,8 +289,8 @@ EffectiveStiffness cell_stiffness(const Network& network, PetscSolver& solver) {
     result.fluctuations.push_back(disc_motions(network.unknowns, cases[k].motion.high));
   result.times.add("stiffness", watch.lap());
   result.unknowns = network.free_count;
-  result.negative_pivots = result.unstable_modes = network.any_negative ? -1 : 0;
-  result.self_stresses = -1;
+  if (network.any_negative) result.negative_pivots = result.unstable_modes = std::nullopt;
+  result.self_stresses = std::nullopt;
   result.solver = solver.name();
   result.factor_bytes = solver.grid_bytes();
   if (const auto weak = result.judge_strains(1e-12)) {

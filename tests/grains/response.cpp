@@ -89,9 +89,9 @@ void respond_from(Contacts& c, std::size_t k) {
   changes.any = eight::any(changes.begun | changes.ended);
   changes.first = false;
   const LawLanes<Lanes> law{dt * at(stiffness), at(least), sliding_law(at(friction), at(spring), dt)};
-  const ContactMotion<Lanes> motion{at(overlap),       at(closing),      at(middle_closing),
-                                    at(half_mobility), at(mean_closing), at(overlap_before),
-                                    at(slip),          at(mobility),     at(mean_slip)};
+  const eight::ContactMotion<Lanes> motion{at(overlap),       at(closing),      at(middle_closing),
+                                           at(half_mobility), at(mean_closing), at(overlap_before),
+                                           at(slip),          at(mobility),     at(mean_slip)};
   ContactMemory<Lanes> memory{at(impulse), at(tangential), at(stretch), {}};
   EffectLanes<Lanes> none;
   ContactLosses<Lanes> losses{};

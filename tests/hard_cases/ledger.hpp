@@ -4,8 +4,10 @@
 /// test promises and measures becomes a row of data/hard_cases.md (make_table.py).
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +29,7 @@ struct Answer {
   double bound = 0;  ///< the library's own
   double condition = 0;
   double residual = 0;
-  std::int64_t unstable_modes = 0;
+  std::optional<std::int64_t> unstable_modes = 0;
   Refusal refusal;  ///< empty where it answered
 };
 

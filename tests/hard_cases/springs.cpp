@@ -91,7 +91,7 @@ TEST_CASE("a_millionth_from_the_limit_of_stability_the_answer_is_right_and_beyon
   table.right("homogenize at -1/3 + 1e-6", above, 1e-13);
   const Answer below = homogenize(cell, springs_of(-1.0 / 3 - 1e-6));
   CHECK(below.unstable_modes == 3);
-  table.note("homogenize at -1/3 - 1e-6", "reported unstable", fmt::format("{} unstable modes", below.unstable_modes));
+  table.note("homogenize at -1/3 - 1e-6", "reported unstable", fmt::format("{} unstable modes", below.unstable_modes.value()));
   table.refused("homogenize at -1/3", homogenize(cell, springs_of(-1.0 / 3)), {"limit of stability", "another kT/kN"});
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("free_edges_near_their_own_limit_of_stability_are_right_above_it_and_c
   const Answer below = solve(pulled_at_right(block, springs_of(limit - 1e-6)));
   CHECK(below.unstable_modes == 1);
   table.note("solve 1e-6 below", "reported unstable",
-             fmt::format("{} unstable mode at {:.8f}", below.unstable_modes, limit - 1e-6));
+             fmt::format("{} unstable mode at {:.8f}", below.unstable_modes.value(), limit - 1e-6));
 }
 
 TEST_CASE("two_halves_joined_by_nearly_nothing_are_right_to_the_digits_left_or_refused") {

@@ -330,6 +330,20 @@ TEST_CASE("a_lattice_that_is_none_is_found_out_and_its_springs_come_with_their_e
   }
 }
 
+TEST_CASE("too_little_memory_is_no_instability_of_the_assembly") {
+  const Assembly cell = random_cell(PointProcess::poisson_disc, 100);
+  CalibrateOptions options;
+  options.homogenize.solver.memory_limit = 1;
+  try {
+    calibrate(cell, {1e9, 0.2, Plane::strain}, options);
+    FAIL("springs were found within a byte");
+  } catch (const Error& error) {
+    CAPTURE(error.what());
+    CHECK(error.kind() == ErrorKind::out_of_memory);
+    CHECK(error.exit_code() == 1);
+  }
+}
+
 TEST_CASE("what_cannot_be_calibrated_is_refused") {
   const Assembly cell = random_cell(PointProcess::poisson_disc, 100);
   const auto refusal = [](const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options) {

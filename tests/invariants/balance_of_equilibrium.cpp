@@ -124,7 +124,7 @@ TEST_CASE("energy_is_half_the_work_of_the_loads") {
 
 TEST_CASE("two_load_cases_do_the_same_work_on_one_anothers_motions") {  // Betti
   for (const HeldScene& scene : held_scenes()) {
-    const EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
+    EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
     const LoadCase first = random_loads(scene, turns(scene), 4), second = random_loads(scene, turns(scene), 5);
     const Equilibrium of_first = solver.solve(first), of_second = solver.solve(second);
     const double there = work(scene.assembly(), first, of_second), back = work(scene.assembly(), second, of_first);
@@ -137,7 +137,7 @@ TEST_CASE("two_load_cases_do_the_same_work_on_one_anothers_motions") {  // Betti
 
 TEST_CASE("load_cases_superpose") {
   for (const HeldScene& scene : held_scenes()) {
-    const EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
+    EquilibriumSolver solver(scene.assembly(), scene.springs, scene.supports, scene.options);
     const LoadCase first = random_loads(scene, turns(scene), 6), second = random_loads(scene, turns(scene), 7);
     LoadCase both = first;
     for (Load load : second) {

@@ -115,7 +115,7 @@ LibrarySolver umfpack() {
 }
 
 /// Largest relative error of the solutions of `count` random right-hand sides, solved at once.
-double error_against_dense(const System& system, const Factorization& factor, int count) {
+double error_against_dense(const System& system, Factorization& factor, int count) {
   const test::DenseMatrix k = test::dense_matrix(system.matrix, system.assembly);
   std::vector<double> x = test::random_vector(k.size * count, 7);
   std::vector<double> expected;
@@ -154,7 +154,7 @@ TEST_CASE("umfpack_solves_indefinite_systems_that_cholesky_refuses") {
   const auto factor = umfpack().factorize(system);
   REQUIRE(factor != nullptr);
   CAPTURE(ratio, factor->report().smallest_pivot);
-  CHECK(factor->report().negative_pivots == -1);
+  CHECK_FALSE(factor->report().negative_pivots);
   CHECK(error_against_dense(system, *factor, 2) < 1e-11);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("a_free_body_has_a_pivot_without_stiffness") {
     if (factor == nullptr) continue;
     CAPTURE(factor->report().smallest_pivot);
     CHECK(factor->report().smallest_pivot < 1e-12);
-    CHECK(factor->report().smallest_component >= 0);
+    CHECK(factor->report().smallest_component);
   }
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("cholesky_back_ends_agree_on_the_smallest_pivot_with_one_order") {
   REQUIRE((ours != nullptr && theirs != nullptr));
   const FactorReport &multifrontal = ours->report(), &supernodal = theirs->report();
   // Orders within a front may differ, and with them which pivot is smallest; its size differs little.
-  CAPTURE(multifrontal.smallest_component, supernodal.smallest_component);
+  CAPTURE(multifrontal.smallest_component.value(), supernodal.smallest_component.value());
   CHECK(supernodal.smallest_pivot == Approx(multifrontal.smallest_pivot).epsilon(0.5));
   CHECK(supernodal.nonzeros <= multifrontal.nonzeros);  // ours keeps held components
 }

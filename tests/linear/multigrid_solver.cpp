@@ -49,7 +49,7 @@ struct Network {
         std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc)),
         {matrix, assembly, graph});
   }
-  [[nodiscard]] std::vector<double> solved(const Factorization& factor, std::vector<double> load) const {
+  [[nodiscard]] std::vector<double> solved(Factorization& factor, std::vector<double> load) const {
     for (std::size_t k = 0; k < load.size(); ++k) {
       if (unknowns.held[k] != 0) load[k] = 0;
     }

@@ -189,7 +189,7 @@ TEST_CASE("moduli_of_a_prestressed_cell_are_those_of_strained_cells_that_relax")
   const double error_coarse = largest_entry(coarse - found.cauchy) / size,
                error_fine = largest_entry(fine - found.cauchy) / size;
   CAPTURE(found.cauchy, fine, error_coarse, error_fine, found.hill_mandel, found.stress_asymmetry,
-          found.stress_at_rest.xx, found.stress_at_rest.yy, found.stress_at_rest.xy, found.unstable_modes);
+          found.stress_at_rest.xx, found.stress_at_rest.yy, found.stress_at_rest.xy, found.unstable_modes.value_or(-1));
   CHECK(error_fine < 1e-4);
   CHECK(error_fine < 0.2 * error_coarse + 1e-7);
   CHECK(found.hill_mandel < 1e-7);
@@ -212,7 +212,7 @@ TEST_CASE("frictionless_ellipses_have_moduli_by_their_forces_at_rest_alone") {
   const auto chosen = choose_prestress(assembly, springs, PrestressChoice::automatic);
   const EffectiveStiffness found = effective_stiffness(assembly, chosen->springs);
   const EffectiveModuli moduli = effective_moduli(found.stiffness);
-  CAPTURE(assembly.coordination_number(), moduli.bulk_modulus_2d, moduli.shear_modulus, found.unstable_modes);
+  CAPTURE(assembly.coordination_number(), moduli.bulk_modulus_2d, moduli.shear_modulus, found.unstable_modes.value_or(-1));
   CHECK(assembly.coordination_number() < 6);
   CHECK(moduli.bulk_modulus_2d > 0.05);
   CHECK(moduli.shear_modulus > 0);

@@ -191,8 +191,8 @@ inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, c
   StageTimes times;
   SolverOptions options;
   options.method = SolverMethod::multifrontal;
-  const StiffnessSolver solver(scene.assembly, springs, ContactGraph(scene.assembly), scene.unknowns, options,
-                               Mechanisms::hold, times);
+  StiffnessSolver solver(scene.assembly, springs, ContactGraph(scene.assembly), scene.unknowns, options,
+                         Mechanisms::hold, times);
   const std::vector<Solution> solutions = solver.solve(scene.cases, times);
   std::vector<std::vector<ContactForce>> forces(scene.cases.size());
   for (std::size_t p = 0; p < scene.cases.size(); ++p) {

@@ -102,7 +102,7 @@ void check_same(const std::string& name, const Assembly& assembly, const Contact
   CHECK(ours.energy == Approx(direct.energy).epsilon(1e-10));
   CHECK(ours.relative_residual <= 1e-12);
   CHECK(ours.unknowns == direct.unknowns);
-  CHECK(ours.negative_pivots == -1);
+  CHECK_FALSE(ours.negative_pivots);
   CHECK(ours.unstable_modes == 0);
   CHECK(ours.solver != direct.solver);
 }

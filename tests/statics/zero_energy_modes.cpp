@@ -201,7 +201,7 @@ TEST_CASE("zero_energy_modes_and_the_work_on_them_do_not_depend_on_rotation_unit
         CAPTURE(network.name, kT, turn, unit, modes);
         const std::vector<Support> supports{{.group = "held", .ux = 0.0, .uy = 0.0, .rotation = {}}};
         const ContactSprings springs(k);
-        const EquilibriumSolver solver(a, springs, supports, holding());
+        EquilibriumSolver solver(a, springs, supports, holding());
 
         // A load that some motion balances does no work on the modes: its contact forces are those of the motion.
         Eigen::VectorXd motion(exact.rows.cols());

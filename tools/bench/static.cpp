@@ -91,7 +91,7 @@ std::unique_ptr<Factorization> factorize(const std::string& solver, const Proble
 }
 
 /// As equidem solves: passes until the residual of the contact law is small enough.
-void solve_by_multigrid(const Problem& problem, const ContactGraph& graph, const Factorization& factor,
+void solve_by_multigrid(const Problem& problem, const ContactGraph& graph, Factorization& factor,
                         std::vector<double>& x) {
   constexpr double tolerance = 1e-12;
   const SpringNetwork network{problem.assembly, graph, problem.springs, problem.unknowns};

@@ -366,8 +366,8 @@ std::optional<Error> failure_of(const std::function<void()>& work, const std::st
   } catch (const Error& error) {
     return error;
   } catch (const std::bad_alloc&) {
-    if (!part.empty()) return Error(ErrorKind::computation_failed, missing, "there is too little memory for it", "");
-    return Error(ErrorKind::computation_failed, "there is too little memory to go on", "",
+    if (!part.empty()) return Error(ErrorKind::out_of_memory, missing, "there is too little memory for it", "");
+    return Error(ErrorKind::out_of_memory, "there is too little memory to go on", "",
                  "Use fewer discs, or a machine with more memory");
   } catch (const std::exception& error) {
     return Error(ErrorKind::computation_failed, part.empty() ? error.what() : missing, part.empty() ? "" : error.what(),

@@ -37,7 +37,7 @@ std::int64_t one_beyond_a_multiple_of_four(double n) {
 
 std::vector<double> solve_block(Case resolved) {
   const Problem problem = prestressed(build_problem(std::move(resolved)));
-  const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
   return searched_values(*solve_case(problem, solver, problem.load_cases.front()).tension);
 }
 

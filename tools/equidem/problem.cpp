@@ -243,7 +243,7 @@ LargestDeformation largest_deformation(const Assembly& assembly, const ContactSp
   return largest;
 }
 
-SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads) {
+SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const NamedLoads& loads) {
   SolvedCase result{.name = loads.name, .equilibrium = solver.solve(loads.loads)};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
@@ -279,12 +279,12 @@ void add_largest_void(Results& results, const Assembly& assembly) {
   if (relative > 1) results.line("", "a hole that would hold another disc: moduli and speeds of such packings scatter");
 }
 
-const char* status_of(std::int64_t unstable_modes) {
-  return unstable_modes > 0 ? "unstable" : unstable_modes < 0 ? "unjudged" : "solved";
+const char* status_of(std::optional<std::int64_t> unstable_modes) {
+  return !unstable_modes ? "unjudged" : *unstable_modes > 0 ? "unstable" : "solved";
 }
 
-ResultValue known(std::int64_t count) {
-  return count < 0 ? ResultValue(nullptr) : ResultValue(count);
+ResultValue known(std::optional<std::int64_t> count) {
+  return count ? ResultValue(*count) : ResultValue(nullptr);
 }
 
 AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {

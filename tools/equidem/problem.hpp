@@ -121,9 +121,9 @@ struct SolvedCase {
   std::optional<TensionResult> tension = {};
 };
 /// "solved"; "unstable" where the assembly would give way; "unjudged" where the solver cannot tell.
-const char* status_of(std::int64_t unstable_modes);
+const char* status_of(std::optional<std::int64_t> unstable_modes);
 
-SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads);
+SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const NamedLoads& loads);
 
 /// Theory of the tension test on a lattice of equal springs; none for other assemblies and springs.
 std::optional<TensionTheory> tension_theory(const Problem& problem);
@@ -132,8 +132,8 @@ std::optional<TensionTheory> tension_theory(const Problem& problem);
 inline constexpr const char* stability_not_known =
     "NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does";
 
-/// A count, or null where it is negative: not known.
-ResultValue known(std::int64_t count);
+/// A count, or null where it is not known.
+ResultValue known(std::optional<std::int64_t> count);
 
 /// Keys of the assembly in the JSON.
 enum class AssemblyKeys {

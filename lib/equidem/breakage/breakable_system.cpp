@@ -21,8 +21,6 @@ namespace equidem {
 
 namespace {
 
-constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
-
 /// A part of a network, with its numbers in the whole.
 using Rest = LoadBearingNetwork::Part;
 
@@ -99,16 +97,6 @@ void add(const UpdateCounters& more, SolverReport& to) {
   to.updates += more.updates;
   to.mended += more.mended;
   to.refinements += more.refinements;
-}
-
-/// A mechanism on which the load works, where there is one. Where no spring is negative a mechanism deforms no contact,
-/// so that only loads can drive it.
-std::vector<double> driven_mechanism(const std::vector<double>& load, const StiffnessSolver& solver) {
-  for (std::int64_t m = 0; !load.empty() && m < solver.factor().report().zero_pivots; ++m) {
-    std::vector<double> motion = solver.factor().null_motion(m);
-    if (does_work(load, motion, solver.unknowns().per_disc)) return motion;
-  }
-  return {};
 }
 
 /// Whether energies and lengths of residuals, which are made of squares of forces, stay in the range of numbers.
@@ -213,7 +201,7 @@ void BreakableSystem::update_from_here() {
     double largest = largest_force(forces(p));
     for (const double f : network_.cases[p].force) largest = std::max(largest, std::abs(f));
     for (const std::size_t k : updated_->held_free) {
-      if (std::abs(reactions(p)[k]) > negligible * largest) return updated_.reset();
+      if (std::abs(reactions(p)[k]) > negligible_reaction * largest) return updated_.reset();
     }
   }
   was_updated_ = true;
@@ -353,7 +341,7 @@ void BreakableSystem::solve_anew() {
   DegreesOfFreedom unknowns = number_unknowns(rest.assembly, rest.springs, network_.effects, network_.supports);
   unknowns.rotation_scale = network_.assembly.mean_radius();
   const HeldMotions held = hold_free_motions(rest.assembly, graph, rest.springs, unknowns);
-  const StiffnessSolver solver(rest.assembly, rest.springs, std::move(graph), std::move(unknowns), network_.solver,
+  StiffnessSolver solver(rest.assembly, rest.springs, std::move(graph), std::move(unknowns), network_.solver,
                                Mechanisms::hold, times);
   ++report_.factorizations;
   if (was_updated_) ++report_.mended;
@@ -362,7 +350,7 @@ void BreakableSystem::solve_anew() {
   solve_cases(solver, held, rest, times);
 }
 
-void BreakableSystem::solve_cases(const StiffnessSolver& solver, const HeldMotions& held, const Rest& rest,
+void BreakableSystem::solve_cases(StiffnessSolver& solver, const HeldMotions& held, const Rest& rest,
                                   StageTimes& times) {
   std::vector<std::size_t> components;  // of the whole, per component of the rest
   for (const std::int32_t disc : rest.discs) {
@@ -384,13 +372,13 @@ void BreakableSystem::solve_cases(const StiffnessSolver& solver, const HeldMotio
     const RightHandSide& whole = network_.cases[p];
     RightHandSide given{.force = of_rest(whole.force), .prescribed = of_rest(whole.prescribed)};
     given.gradient = whole.gradient;
-    const std::vector<double> driven = driven_mechanism(given.force, solver);
-    states_[p].carried = driven.empty();
+    const auto driven = solver.driven_mechanism(given.force);
+    states_[p].carried = !driven;
     if (states_[p].carried) {
       cases.push_back(std::move(given));
       states.push_back(&states_[p]);
     } else {
-      why_not_ = describe_driven(disc_motions(solver.unknowns(), of_whole(driven)));
+      why_not_ = describe_driven(disc_motions(solver.unknowns(), of_whole(*driven)));
     }
   }
   if (cases.empty()) return;
@@ -407,7 +395,7 @@ void BreakableSystem::solve_cases(const StiffnessSolver& solver, const HeldMotio
     internal_force(rest.assembly, solver.graph(), solver.unknowns(), forces, reactions);
     keep_reactions(solver.unknowns(), cases[p].force, reactions);
     for (const std::size_t component : held.components) {
-      const bool loaded = std::abs(reactions[component]) > negligible * solutions[p].scale;
+      const bool loaded = std::abs(reactions[component]) > negligible_reaction * solutions[p].scale;
       if (!loaded) reactions[component] = 0;
       if (!loaded || !state.carried) continue;
       state.carried = false;

@@ -102,8 +102,8 @@ class BreakableSystem {
   [[nodiscard]] const std::vector<std::uint8_t>& left() const { return left_; }
   /// |f - f_int| over |f|, the largest of the right-hand sides.
   [[nodiscard]] double relative_residual() const { return residual_; }
-  /// Negative eigenvalues of K beyond those that rotations bring by themselves where kT < 0; -1: not known.
-  [[nodiscard]] std::int64_t unstable_modes() const { return unstable_modes_; }
+  /// Negative eigenvalues of K beyond those that rotations bring by themselves where kT < 0; none: not known.
+  [[nodiscard]] std::optional<std::int64_t> unstable_modes() const { return unstable_modes_; }
   [[nodiscard]] SolverReport report() const;
   [[nodiscard]] const BreakableNetwork& network() const { return network_; }
   /// Per contact, 1.
@@ -125,7 +125,7 @@ class BreakableSystem {
   [[nodiscard]] const State& state(std::size_t of_case) const;
   void read_state(State& state, std::size_t of_case) const;
   void solve_anew();
-  void solve_cases(const StiffnessSolver& solver, const HeldMotions& held, const LoadBearingNetwork::Part& rest,
+  void solve_cases(StiffnessSolver& solver, const HeldMotions& held, const LoadBearingNetwork::Part& rest,
                    StageTimes& times);
   [[nodiscard]] std::string describe_driven(const std::vector<DiscMotion>& motions) const;
   void measured(double residual);
@@ -139,7 +139,7 @@ class BreakableSystem {
   mutable bool read_ = false;          // whether they are
   std::string why_not_;
   double residual_ = 0;
-  std::int64_t unstable_modes_ = 0;
+  std::optional<std::int64_t> unstable_modes_ = 0;
   SolverReport report_;  // without what the updated factor has counted
 };
 

@@ -55,7 +55,6 @@ BreakEvent EventPath::event_of(std::size_t contact, BreakMode mode) const {
           .work = energies.work,
           .load_rate = at.load_rate,
           .motion_rate = at.motion_rate,
-          .unstable_modes = -1,
           .friction = energies.friction};
 }
 

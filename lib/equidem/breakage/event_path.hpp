@@ -43,7 +43,7 @@ struct BreakEvent {
   double energy_released = 0;
   double work = 0;  ///< N, of everything from outside, from the unloaded state to behind this event
   double load_rate = 0, motion_rate = 0;  ///< of lambda, of the network with the contact
-  std::int64_t unstable_modes = 0;        ///< of the network with the contact; -1: not known
+  std::optional<std::int64_t> unstable_modes{};  ///< of the network with the contact; none: not known
   double relative_residual = 0;           ///< of the state at which it breaks
   std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it and carry nothing behind it
   double friction = 0;                    ///< N, lost by slip so far where contacts have friction; else 0

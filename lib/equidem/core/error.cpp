@@ -56,6 +56,10 @@ Error Error::at(const std::string& where) const {
   return where_.empty() && kind_ != ErrorKind::interrupted ? Error(kind_, problem_, why_, remedy_, where) : *this;
 }
 
+Error Error::because(const std::string& reason) const {
+  return {kind_, problem_, why_.empty() ? reason : why_ + "; " + reason, remedy_, where_};
+}
+
 void bad_input(std::string problem, std::string why, std::string remedy) {
   bad_input_at({}, std::move(problem), std::move(why), std::move(remedy));
 }
@@ -100,6 +104,10 @@ void bad_input_at(std::string where, std::string problem, std::string why, std::
 
 void computation_failed(std::string problem, std::string why, std::string remedy) {
   throw Error(ErrorKind::computation_failed, std::move(problem), std::move(why), std::move(remedy));
+}
+
+void out_of_memory(std::string problem, std::string why, std::string remedy) {
+  throw Error(ErrorKind::out_of_memory, std::move(problem), std::move(why), std::move(remedy));
 }
 
 }  // namespace equidem

@@ -18,6 +18,7 @@ namespace equidem {
 enum class ErrorKind {
   computation_failed = 1,  ///< the input was accepted, but no trustworthy answer exists or was reached
   bad_input = 2,           ///< the input cannot be used as it is
+  out_of_memory = 3,       ///< likewise accepted, but the machine or a limit has too little memory: exit code 1
   interrupted = 130,       ///< the user asked to stop
 };
 
@@ -32,14 +33,20 @@ class Error : public std::runtime_error {
   Error(ErrorKind kind, std::string problem, std::string why, std::string remedy, std::string where = {});
 
   [[nodiscard]] ErrorKind kind() const { return kind_; }
+  /// Whether the input was accepted and no answer was reached, for want of memory or otherwise.
+  [[nodiscard]] bool failed() const {
+    return kind_ == ErrorKind::computation_failed || kind_ == ErrorKind::out_of_memory;
+  }
   [[nodiscard]] const std::string& problem() const { return problem_; }
   [[nodiscard]] const std::string& why() const { return why_; }
   [[nodiscard]] const std::string& remedy() const { return remedy_; }
   [[nodiscard]] const std::string& where() const { return where_; }
-  [[nodiscard]] int exit_code() const { return static_cast<int>(kind_); }
+  [[nodiscard]] int exit_code() const { return failed() ? 1 : static_cast<int>(kind_); }
 
   /// A copy with the place in the user's file that caused the error. One that is set stays; interruptions have none.
   [[nodiscard]] Error at(const std::string& where) const;
+  /// A copy with one more reason.
+  [[nodiscard]] Error because(const std::string& reason) const;
 
  private:
   ErrorKind kind_;
@@ -53,9 +60,7 @@ class ErrorWith : public Error {
   ErrorWith(const Error& error, Found found) : Error(error), found_(std::make_shared<const Found>(std::move(found))) {}
   /// \param reason one more
   ErrorWith(const Error& error, const std::string& reason, Found found)
-      : ErrorWith(Error(error.kind(), error.problem(), error.why().empty() ? reason : error.why() + "; " + reason,
-                        error.remedy(), error.where()),
-                  std::move(found)) {}
+      : ErrorWith(error.because(reason), std::move(found)) {}
 
   [[nodiscard]] const Found& found() const { return *found_; }
 
@@ -117,5 +122,7 @@ double check_positive(double value, const std::string& name, const std::string& 
 
 /// Throw an Error of kind computation_failed.
 [[noreturn]] void computation_failed(std::string problem, std::string why, std::string remedy);
+/// Throw an Error of kind out_of_memory.
+[[noreturn]] void out_of_memory(std::string problem, std::string why, std::string remedy);
 
 }  // namespace equidem

@@ -38,10 +38,10 @@ class PeakMemory {
 /// \param what beginning of the sentence, up to the amount: "a run of 1 000 000 discs needs about"
 /// \param remedy what the user can do
 /// \param limit bytes; 0: what is available
-/// \throws Error (computation_failed) where `bytes` exceed the limit
+/// \throws Error (out_of_memory) where `bytes` exceed the limit
 void require_memory(double bytes, const std::string& what,
                     const std::string& remedy = "Use fewer discs, or a machine with more memory", double limit = 0);
-/// \throws Error (computation_failed) where `bytes` exceed available_address_space()
+/// \throws Error (out_of_memory) where `bytes` exceed available_address_space()
 void require_address_space(double bytes, const std::string& what);
 
 }  // namespace equidem

@@ -110,7 +110,7 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
     EffectiveStiffness equal = solve(assembly, equal_springs(springs, assembly.mean_radius()), options);
     return !equal.judge_strains();
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
+    if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::out_of_memory) throw;
     return false;
   }
 }
@@ -153,7 +153,7 @@ std::optional<std::string> EffectiveStiffness::judge_strains(double nothing) {
   }
   unstable_strains = std::count_if(eigen.values.begin(), eigen.values.end(), [](double v) { return v < 0; });
   // The inertia of motions and mean strain together is that of K and that of C, its Schur complement (Haynsworth 1968).
-  if (unstable_strains > 0) unstable_modes = std::max<std::int64_t>(unstable_modes, 0) + unstable_strains;
+  if (unstable_strains > 0) unstable_modes = unstable_modes.value_or(0) + unstable_strains;
   return {};
 }
 

@@ -16,6 +16,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/boundary.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
 
@@ -32,7 +33,7 @@ struct ZeroEnergyMode {
 };
 
 /// Effective stiffness with measures of its accuracy.
-struct EffectiveStiffness {
+struct EffectiveStiffness : SolverFindings {
   Boundary boundary = Boundary::periodic;
   double area = 0;  ///< m², by which energies are divided
   /// Pa, symmetric part of the stress by strain (Voigt, engineering shear), from the energies of the load cases:
@@ -73,17 +74,11 @@ struct EffectiveStiffness {
   std::vector<std::string> removed;     ///< sentences that name them
   std::vector<ZeroEnergyMode> motions;  ///< held, since they do not change the stiffness; at most a few are described
   std::int64_t gear_modes = 0;
-  std::int64_t local_mechanisms = 0;
-  std::int64_t self_stresses = 0;  ///< independent states of self-stress (Maxwell & Calladine); -1: not counted
+  /// Independent states of self-stress (Maxwell & Calladine); none: not counted.
+  std::optional<std::int64_t> self_stresses = 0;
   Effects effects;
-  std::int64_t unknowns = 0;
-  std::int64_t negative_pivots = 0;
-  /// As in Equilibrium, plus the mean strains that release energy; 0: stable in statics within this cell.
-  std::int64_t unstable_modes = 0;
-  std::int64_t unstable_strains = 0;  ///< negative eigenvalues of `stiffness`
-  std::string solver;
-  std::int64_t iterations = 0;  ///< of all load cases, where the method is iterative
-  double factor_bytes = 0;
+  /// Negative eigenvalues of `stiffness`, which count as unstable modes too.
+  std::int64_t unstable_strains = 0;
   StageTimes times;
   /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for
   /// tractions.

@@ -24,10 +24,9 @@ constexpr std::size_t most_described = 8;
 /// Gears, and other zero-energy modes: no contact is deformed by them, so that the forces of any mean strain do no work
 /// on them, and moduli exist where every mean strain has energy. At most eight of each kind are described.
 /// \param name of the network for messages: "the network", "the cell, cut open at its boundary,"
-/// \throws Error (bad_input) where there are more than 1000: the network is floppy
-std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const ContactSprings& springs,
-                                              const StiffnessSolver& solver, const HeldMotions& held,
-                                              const std::string& name) {
+/// \throws Error (bad_input) as StiffnessSolver::refuse_floppy
+std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const StiffnessSolver& solver,
+                                              const HeldMotions& held, const std::string& name) {
   std::vector<ZeroEnergyMode> result;
   for (const GearMode& gear : held.gears) {
     if (result.size() == most_described) break;
@@ -35,18 +34,9 @@ std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const Co
                                           counted(gear.discs, "disc"),
                                           describe_disc(assembly, static_cast<std::size_t>(gear.first_disc)))});
   }
-  const std::int64_t mechanisms = solver.factor().report().zero_pivots;
-  constexpr std::int64_t too_many = 1000;
-  const auto description = [&](std::int64_t k) {
-    return describe_motion(assembly, disc_motions(solver.unknowns(), solver.factor().null_motion(k)));
-  };
-  if (mechanisms > too_many) {
-    bad_input(fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
-              fmt::format("a motion has no energy: {}", description(0)),
-              remedy_of_mechanisms(assembly, springs, solver.unknowns().per_disc == 3));
-  }
-  for (std::int64_t k = 0; k < std::min<std::int64_t>(mechanisms, most_described); ++k) {
-    ZeroEnergyMode mode{"mode", description(k)};
+  solver.refuse_floppy(name);
+  for (std::int64_t k = 0; k < std::min<std::int64_t>(solver.factor().report().zero_pivots, most_described); ++k) {
+    ZeroEnergyMode mode{"mode", solver.describe_mechanism(k)};
     const auto same = [&](const ZeroEnergyMode& other) { return other.description == mode.description; };
     if (std::ranges::none_of(result, same)) result.push_back(std::move(mode));
   }
@@ -94,19 +84,15 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   SolverOptions solver = options_.solver;
   solver.right_hand_sides = 3;  // mean strains
   solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), solver, Mechanisms::hold, result.times);
-  const FactorReport& report = solver_->factor().report();
-  result.motions = zero_energy_modes(assembly(), springs(), *solver_, held_motions_,
+  result.motions = zero_energy_modes(assembly(), *solver_, held_motions_,
                                      options_.boundary == Boundary::traction && !whole_.groups.contains("left")
                                          ? "the cell, cut open at its boundary,"
                                          : "the network");
   result.gear_modes = static_cast<std::int64_t>(held_motions_.gears.size());
-  result.local_mechanisms = report.zero_pivots;
+  static_cast<SolverFindings&>(result) = solver_->findings();
   result.self_stresses =
       count_self_stresses(assembly(), springs(), result.effects, free_unknowns,
-                          static_cast<std::int64_t>(held_motions_.components.size()) + result.local_mechanisms);
-  result.unknowns = solver_->unknowns().unknowns;
-  result.negative_pivots = report.negative_pivots;
-  result.unstable_modes = solver_->unstable_modes();
+                          static_cast<std::int64_t>(held_motions_.components.size()) + result.mechanisms);
 }
 
 std::vector<std::int32_t> SampleSolver::indices() const {
@@ -131,18 +117,14 @@ void SampleSolver::report_unbalanced_disc(std::size_t disc) const {
             "Use boundary = \"periodic\" or \"displacement\", or a larger sample");
 }
 
-void SampleSolver::check_loads_on_mechanisms(const RightHandSide& given) const {
-  for (std::int64_t k = 0; k < solver_->factor().report().zero_pivots; ++k) {
-    const std::vector<double> motion = solver_->factor().null_motion(k);
-    if (!does_work(given.force, motion, unknowns().per_disc)) continue;
-    const auto most = std::ranges::max_element(motion, {}, [](double x) { return std::abs(x); });
-    report_unbalanced_disc(static_cast<std::size_t>(most - motion.begin()) / unknowns().per_disc);
-  }
-}
-
 std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, EffectiveStiffness& result) {
   if (options_.boundary == Boundary::traction) {
-    for (const RightHandSide& given : cases) check_loads_on_mechanisms(given);
+    for (const RightHandSide& given : cases) {
+      const auto driven = solver_->driven_mechanism(given.force);
+      if (!driven) continue;
+      const auto most = std::ranges::max_element(*driven, {}, [](double x) { return std::abs(x); });
+      report_unbalanced_disc(static_cast<std::size_t>(most - driven->begin()) / unknowns().per_disc);
+    }
   }
   std::vector<Solution> solutions = solver_->solve(cases, result.times);
   Stopwatch watch;
@@ -160,10 +142,7 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
     const double residual = solver_->scaled_residual_bound(cases, solutions);
     energy_error_ = safety * residual * residual * result.condition;
   }
-  const FactorReport& report = solver_->factor().report();
-  result.solver = solver_->solver_name();
-  result.factor_bytes = report.bytes;
-  result.iterations = report.iterations;
+  static_cast<SolverFindings&>(result) = solver_->findings();
   result.times.add("error bound", watch.lap());
   return solutions;
 }
@@ -180,8 +159,7 @@ void SampleSolver::check_reactions(const RightHandSide& given, const Solution& s
   internal_force({assembly(), solver_->graph(), springs(), unknowns()}, solution.motion, given.gradient, internal);
   for (const std::size_t k : held_motions_.components) {
     const double load = given.force.empty() ? 0.0 : given.force[k];
-    constexpr double negligible = 1e-8;  // what rounding leaves where loads balance
-    if (std::abs(internal[k] - load) <= negligible * std::max(size, std::abs(load))) continue;
+    if (std::abs(internal[k] - load) <= negligible_reaction * std::max(size, std::abs(load))) continue;
     if (options_.boundary == Boundary::traction) report_unbalanced_disc(k / unknowns().per_disc);
     computation_failed("a motion that nothing resists is driven by the mean strain",
                        "at this kT/kN the cell is at its limit of stability",

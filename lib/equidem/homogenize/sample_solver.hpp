@@ -50,7 +50,6 @@ class SampleSolver {
   void prune(const std::vector<std::uint8_t>& held, EffectiveStiffness& result);
   void factorize(const std::vector<std::uint8_t>& held, bool hold_translations, EffectiveStiffness& result);
   [[noreturn]] void report_unbalanced_disc(std::size_t disc) const;
-  void check_loads_on_mechanisms(const RightHandSide& given) const;
   void check_reactions(const RightHandSide& given, const Solution& solution) const;
 
   const Assembly& whole_;

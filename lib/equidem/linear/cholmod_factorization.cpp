@@ -119,7 +119,7 @@ class CholmodCholesky final : public Factorization {
     return positive;
   }
 
-  void solve(std::span<double> x, int right_hand_sides) const override {
+  void solve(std::span<double> x, int right_hand_sides) override {
     const std::size_t free = component_.size(), columns = static_cast<std::size_t>(right_hand_sides);
     const std::size_t n = columns == 0 ? 0 : x.size() / columns;
     const OneThread one_thread;
@@ -152,7 +152,7 @@ class CholmodCholesky final : public Factorization {
     const auto* permutation = static_cast<const int*>(factor.Perm);
     if (!positive) {
       report_.smallest_pivot = 0;
-      report_.smallest_component = component_[permutation[factor.minor]];
+      report_.smallest_component = static_cast<std::size_t>(component_[permutation[factor.minor]]);
       return;
     }
     assert(factor.is_super);
@@ -166,9 +166,9 @@ class CholmodCholesky final : public Factorization {
         const double pivot = l[value_begin[s] + static_cast<std::size_t>(c - begin[s]) * (rows + 1)];
         const int column = permutation[c];
         const double share = pivot * pivot / k.values[k.first[column]];  // a column begins with its diagonal
-        if (report_.smallest_component >= 0 && share >= report_.smallest_pivot) continue;
+        if (report_.smallest_component && share >= report_.smallest_pivot) continue;
         report_.smallest_pivot = share;
-        report_.smallest_component = component_[column];
+        report_.smallest_component = static_cast<std::size_t>(component_[column]);
       }
     }
   }
@@ -177,7 +177,7 @@ class CholmodCholesky final : public Factorization {
     const std::string problem =
         fmt::format("{} the stiffness matrix of {} unknowns failed in CHOLMOD", doing, component_.size());
     if (status == CHOLMOD_OUT_OF_MEMORY) {
-      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
+      out_of_memory(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
     }
     computation_failed(problem,
                        status == CHOLMOD_TOO_LARGE ? "its indices of 32 bits do not number the entries of the factor"

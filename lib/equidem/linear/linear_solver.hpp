@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The linear solvers, and the choice of one.
+/// The linear solvers, their options and what a solution costs.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 
 namespace equidem {
 
+struct Assembly;
 struct DegreesOfFreedom;
 struct MatrixOnGraph;
 struct SolverOptions;
@@ -120,10 +121,13 @@ struct SolveEstimate {
   double operations = 0;  ///< additions and multiplications
 };
 
-/// Treatment of zero-energy modes.
-enum class Mechanisms {
-  refuse,  ///< an Error that names it
-  hold,    ///< hold as many unknowns as there are such motions: FactorReport::zero_pivots
-};
+/// The cost of a factorization. \param indefinite by L D L^T
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
+/// The cost of an iterative method.
+SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
+
+/// \throws Error (out_of_memory) where the estimated peak exceeds `memory_limit` bytes, or what the machine has
+///         where it is 0
+void check_memory(const SolveEstimate& estimate, double memory_limit);
 
 }  // namespace equidem

@@ -73,7 +73,7 @@ struct Work {
     const std::string problem = fmt::format("{} the {}stiffness matrix of {} unknowns failed in UMFPACK", doing,
                                             complex ? "complex " : "", size);
     if (failed == UMFPACK_ERROR_out_of_memory) {
-      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
+      out_of_memory(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
     }
     computation_failed(problem, fmt::format("its status is {}", failed),
                        complex ? "Choose another frequency" : "Choose another solver: method = \"multifrontal\"");
@@ -109,7 +109,7 @@ class UmfpackLu final : public Factorization {
     return work_->status == UMFPACK_OK;
   }
 
-  void solve(std::span<double> x, int right_hand_sides) const override {
+  void solve(std::span<double> x, int right_hand_sides) override {
     const std::size_t free = component_.size(), columns = static_cast<std::size_t>(right_hand_sides);
     const std::size_t n = columns == 0 ? 0 : x.size() / columns;
     const dense::OneThreadPerCall one_thread;
@@ -141,9 +141,9 @@ class UmfpackLu final : public Factorization {
       double largest = 0;
       for (Index e = k.first[c]; e < k.first[c + 1]; ++e) largest = std::max(largest, std::abs(k.values[e]));
       const double share = largest > 0 ? std::abs(pivots[p]) / largest : 0.0;
-      if (report_.smallest_component >= 0 && share >= report_.smallest_pivot) continue;
+      if (report_.smallest_component && share >= report_.smallest_pivot) continue;
       report_.smallest_pivot = share;
-      report_.smallest_component = component_[c];
+      report_.smallest_component = static_cast<std::size_t>(component_[c]);
     }
   }
 

@@ -17,7 +17,7 @@ namespace equidem {
 
 /// P K Q = L U over the components that are not held, with threshold partial pivoting (|L_ij| <= 10) and an ordering
 /// of UMFPACK's own: any K that is not singular. Symmetry is not used, so that time and memory are about twice those
-/// of a symmetric factorization, and the inertia stays unknown (negative_pivots = -1). Returns a null pointer where a
+/// of a symmetric factorization, and the inertia stays unknown. Returns a null pointer where a
 /// pivot is zero; a singular K may also end in one near round-off: the report's smallest_pivot, here over the largest
 /// entry of its column, shows it. Held components are solved as rows of a unit matrix times the largest spring.
 /// \throws Error (computation_failed) where memory does not suffice or UMFPACK fails

@@ -44,7 +44,7 @@ class LoadPencil final : public StiffnessPencil {
   };
   Inertia inertia(double factor) {
     const FactorReport report = factorize(factor)->report();
-    return {report.negative_pivots, report.zero_pivots};
+    return {report.negative_pivots.value(), report.zero_pivots};
   }
   bool stable(double factor) {
     const Inertia counted = inertia(factor);

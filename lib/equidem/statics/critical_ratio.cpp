@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "equidem/contact/effects.hpp"
@@ -145,7 +146,7 @@ class RatioPencil final : public StiffnessPencil {
     const StiffnessMatrix matrix = stiffness(-1);
     const MatrixOnGraph k{matrix, assembly_, graph_};
     negative_rotations_ = negative_rotations({k, springs, unknowns_, symbolic_});
-    if (negative_rotations_ >= 0) return;
+    if (negative_rotations_) return;
     computation_failed("some discs can turn without any slip, and no translation comes with it",
                        "the rotations they leave undecided hide the sign of the others",
                        "Hold the rotation of one disc of each such group, or restrain rotation");
@@ -154,7 +155,7 @@ class RatioPencil final : public StiffnessPencil {
   const ContactSprings& springs_;
   const CriticalRatioOptions& options_;
   std::int64_t mechanisms_ = 0;
-  std::int64_t negative_rotations_ = 0;
+  std::optional<std::int64_t> negative_rotations_;
 };
 
 /// \param x the eigenvector that belongs to the value; empty where there is none

@@ -49,9 +49,9 @@ struct EquilibriumSolver::Implementation {
 
   StiffnessSolver build(std::span<const Support> supports);
   /// \param force per component, N/m
-  [[nodiscard]] Equilibrium solve(std::vector<double> force) const;
+  [[nodiscard]] Equilibrium solve(std::vector<double> force);
   void check_mechanisms(const RightHandSide& given, Equilibrium& result) const;
-  void bound_error(const RightHandSide& given, const Solution& solution, Equilibrium& result) const;
+  void bound_error(const RightHandSide& given, const Solution& solution, Equilibrium& result);
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
 };
 
@@ -71,11 +71,10 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
       times};
 }
 
-Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) const {
+Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) {
   Equilibrium result;
   result.times = times;
   const DegreesOfFreedom& unknowns = solver.unknowns();
-  result.unknowns = unknowns.unknowns;
   RightHandSide given;
   given.force = std::move(force);
   check_inert_loads(assembly, unknowns, given.force);
@@ -101,7 +100,6 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   Stopwatch watch;
   result.relative_residual = solution.relative_residual();
   result.refinements = solution.refinements;
-  result.iterations = solver.factor().report().iterations - iterations_before;
   if (solution.scale > 0) result.rounded_residual = solver.rounded_residual(given, solution.motion) / solution.scale;
   result.times.add("refine", watch.lap());
   if (options.solver.accuracy > 0 && solution.energy_error > 0) {
@@ -120,40 +118,25 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
     bad_input("the numbers of this case overflow a double", "the elastic energy comes out as no finite number",
               "Check the units of sizes, springs and loads");
   }
-  const FactorReport& report = solver.factor().report();
-  result.solver = solver.solver_name();
-  result.negative_pivots = report.negative_pivots;
-  result.unstable_modes = solver.unstable_modes();
-  result.pivot_growth = report.growth;
-  result.factor_nonzeros = report.nonzeros;
-  result.factor_bytes = report.bytes;
+  static_cast<SolverFindings&>(result) = solver.findings();
+  result.iterations -= iterations_before;
   return result;
 }
 
-/// A mechanism deforms no contact: prescribed motions do no work on it, loads may.
 void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& given, Equilibrium& result) const {
-  constexpr std::int64_t most = 1000;
-  result.mechanisms = solver.factor().report().zero_pivots;
-  const auto description = [&](std::int64_t k) {
-    return describe_motion(assembly, disc_motions(solver.unknowns(), solver.factor().null_motion(k)));
-  };
-  if (result.mechanisms > 0) result.first_mechanism = description(0);
-  if (result.mechanisms > most) {
-    bad_input(fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
-              fmt::format("a motion has no energy: {}", result.first_mechanism),
-              remedy_of_mechanisms(assembly, springs, effects.rotation));
-  }
-  for (std::int64_t k = 0; k < result.mechanisms; ++k) {
-    if (!does_work(given.force, solver.factor().null_motion(k), solver.unknowns().per_disc)) continue;
-    bad_input("a load drives a mechanism",
-              fmt::format("it does work on a motion that has no energy: {}", description(k)),
-              remedy_of_mechanisms(assembly, springs, effects.rotation,
-                                   {"hold that motion by a support", "take the load off those discs"}));
-  }
+  solver.refuse_floppy("the assembly");
+  if (solver.factor().report().zero_pivots > 0) result.first_mechanism = solver.describe_mechanism(0);
+  const auto driven = solver.driven_mechanism(given.force);
+  if (!driven) return;
+  bad_input("a load drives a mechanism",
+            fmt::format("it does work on a motion that has no energy: {}",
+                        describe_motion(assembly, disc_motions(solver.unknowns(), *driven))),
+            remedy_of_mechanisms(assembly, springs, effects.rotation,
+                                 {"hold that motion by a support", "take the load off those discs"}));
 }
 
 void EquilibriumSolver::Implementation::bound_error(const RightHandSide& given, const Solution& solution,
-                                                    Equilibrium& result) const {
+                                                    Equilibrium& result) {
   const SoftestMotion softest = solver.softest_motion(solution.motion.high);
   result.condition = solver.norm() * softest.inverse_norm;
   double size = 0;
@@ -219,11 +202,11 @@ EquilibriumSolver::~EquilibriumSolver() = default;
 EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
-Equilibrium EquilibriumSolver::solve(const LoadCase& loads) const {
-  const Implementation& self = *implementation_;
+Equilibrium EquilibriumSolver::solve(const LoadCase& loads) {
+  Implementation& self = *implementation_;
   return self.solve(assemble_loads(self.assembly, self.solver.unknowns(), loads));
 }
-Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) const {
+Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) {
   assert(loads.size() == implementation_->assembly.size());
   return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads));
 }
@@ -269,14 +252,13 @@ std::string Equilibrium::report() const {
     text += fmt::format("condition about {:.1e}; relative error of the motions at most about {:.1e}\n", condition,
                         error_bound);
   if (negative_pivots > 0 || unstable_modes != 0) {
-    text +=
-        negative_pivots < 0 ? "negative pivots not counted: " : fmt::format("{} negative pivots: ", negative_pivots);
+    text += negative_pivots ? fmt::format("{} negative pivots: ", *negative_pivots) : "negative pivots not counted: ";
     if (unstable_modes == 0) {
       text += "those of the rotations alone (kT < 0); the state of rest is stable in statics\n";
-    } else if (unstable_modes < 0) {
+    } else if (!unstable_modes) {
       text += "the solver does not determine stability\n";
     } else {
-      text += fmt::format("{} beyond those of the rotations: the state of rest is UNSTABLE\n", unstable_modes);
+      text += fmt::format("{} beyond those of the rotations: the state of rest is UNSTABLE\n", *unstable_modes);
     }
   }
   for (const auto& [stage, seconds] : times.stages()) text += fmt::format("{:<10} {:.4f} s\n", stage, seconds);

@@ -16,6 +16,8 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/loads.hpp"
+#include "equidem/statics/rigidity.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
 
@@ -27,7 +29,7 @@ struct Reaction {
 };
 
 /// The state of rest of one load case, with measures of its accuracy.
-struct Equilibrium {
+struct Equilibrium : SolverFindings {
   std::vector<DiscMotion> motions;           ///< per disc
   std::vector<ContactForce> contact_forces;  ///< per contact; beside those at rest, along n and s of before the motion
   /// N, per contact where bending springs count, else empty: on the first disc; its negative acts on the second.
@@ -39,7 +41,6 @@ struct Equilibrium {
   double relative_residual = 0;
   double rounded_residual = 0;  ///< the same for `motions`, which are u rounded to doubles
   int refinements = 0;          ///< steps of iterative refinement done
-  std::int64_t iterations = 0;  ///< of all passes together, where the method is iterative
   /// |K| |K^-1|, estimated (2-norm of the inverse by inverse iteration from the solution), and the bound on the
   /// relative error of `motions` (2-norm) that follows from it, the residual and the rounding of normals, with a margin
   /// of 10; 0 unless asked for.
@@ -47,19 +48,8 @@ struct Equilibrium {
   /// the bound.
   double condition = 0;
   double error_bound = 0;
-  std::int64_t unknowns = 0;
-  std::int64_t negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law of inertia); -1: not counted
-  /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent
-  /// unstable motions. 0: the equilibrium is statically stable; -1: the solver does not
-  /// determine it.
-  std::int64_t unstable_modes = 0;
-  std::int64_t mechanisms = 0;  ///< that are held
   std::string first_mechanism;  ///< description; empty where there is none
-  double pivot_growth = 0;      ///< largest |L_ij| of the factorization
-  double factor_nonzeros = 0;   ///< entries of L
-  double factor_bytes = 0;
-  std::string solver;  ///< the back end and factorization used
-  StageTimes times;    ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
+  StageTimes times;             ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
 
   /// Total elastic energy, N (J/m per m); of prestressed contacts its part of second order in the motion.
   double energy = 0;
@@ -75,14 +65,15 @@ struct EquilibriumOptions {
   Mechanisms mechanisms = Mechanisms::refuse;
 };
 
-/// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one factorization.
+/// A factorized stiffness matrix of an assembly with its supports: any number of load cases, one factorization. One
+/// thread at a time may solve.
 class EquilibriumSolver {
  public:
   /// Decide the unknowns, check the supports, assemble K, order, analyze and factorize. The assembly and the springs
   /// must outlive this object.
   /// \throws Error (bad_input) on discs without contacts, an assembly in pieces of which some can move freely, a
   ///         rigid motion that the supports leave free (named), a mechanism (named); Error (computation_failed) where
-  ///         the factor would not fit into memory or K is singular
+  ///         K is singular, (out_of_memory) where the factor would not fit
   EquilibriumSolver(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
                     const EquilibriumOptions& options = {});
   ~EquilibriumSolver();
@@ -94,9 +85,9 @@ class EquilibriumSolver {
   /// A load on a component that is held goes straight into its reaction.
   /// \throws Error (bad_input) where a load names no group or an empty one, or gives a moment to a disc that nothing
   ///         keeps from turning; Error (computation_failed) where the residual shows that K is too near to singular
-  [[nodiscard]] Equilibrium solve(const LoadCase& loads) const;
+  [[nodiscard]] Equilibrium solve(const LoadCase& loads);
   /// \param loads one for each disc
-  [[nodiscard]] Equilibrium solve(std::span<const DiscForce> loads) const;
+  [[nodiscard]] Equilibrium solve(std::span<const DiscForce> loads);
   [[nodiscard]] const Effects& effects() const;
   [[nodiscard]] std::int64_t unknowns() const;
 

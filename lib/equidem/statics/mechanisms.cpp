@@ -144,7 +144,7 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   report.gears = static_cast<std::int64_t>(system.held.gears.size());
   // No spring is negative: without prestress a negative pivot is the round-off of a zero.
   if (system.factor) report.others = system.factor->report().zero_pivots;
-  if (system.factor && !springs.prestressed()) report.others += system.factor->report().negative_pivots;
+  if (system.factor && !springs.prestressed()) report.others += system.factor->report().negative_pivots.value();
   const std::int64_t of_the_whole = !supports.empty() ? 0 : assembly.periodic() ? 2 : 3;
   report.rigid_motions = std::min(of_the_whole, system.held.rigid);
   report.free_pieces = system.held.rigid - report.rigid_motions;
@@ -161,12 +161,12 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
         describe_disc(assembly, static_cast<std::size_t>(first.first_disc))));
   }
   if (report.others > 0) {
-    const std::vector<double> motion = system.factor->softest_motion();
+    const auto motion = system.factor->softest_motion();
     report.sentences.push_back(fmt::format(
         "{} {}{}", counted(report.others, "motion"),
         springs.prestressed() ? "that springs and forces at rest together do not resist"
                               : "in which no contact stretches or slips",
-        motion.empty() ? "" : ", such as " + describe_motion(assembly, disc_motions(system.unknowns, motion))));
+        motion ? ", such as " + describe_motion(assembly, disc_motions(system.unknowns, *motion)) : ""));
   }
   if (assembly.periodic() && supports.empty()) {
     const ContactSprings equal(SpringConstants{1, 1});  // contacts without slip carry no load, but join their discs
@@ -190,10 +190,10 @@ InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& sprin
   HeldSystem system(assembly, springs, rotation, supports);
   system.factorize(assembly, springs);
   InertiaReport report;
-  report.negative_pivots = system.factor->report().negative_pivots;
+  report.negative_pivots = system.factor->report().negative_pivots.value();
   const MatrixOnGraph k{system.matrix, assembly, system.graph};
-  const std::int64_t of_rotations = negative_rotations({k, springs, system.unknowns, system.symbolic});
-  report.unstable_modes = of_rotations < 0 ? -1 : report.negative_pivots - of_rotations;
+  report.unstable_modes = negative_rotations({k, springs, system.unknowns, system.symbolic});
+  if (report.unstable_modes) report.unstable_modes = report.negative_pivots - *report.unstable_modes;
   return report;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@
 #include "equidem/statics/rigid_motions.hpp"
 
 namespace equidem {
+
+/// Over the size of its terms: what rounding leaves of the reaction of a component that is held in place of a
+/// zero-energy mode on which the loads do no work.
+inline constexpr double negligible_reaction = 1e-8;
 
 struct HeldMotions {
   std::vector<std::size_t> components;  ///< disc * per_disc + k, one for each motion
@@ -46,14 +51,14 @@ struct MechanismReport {
 };
 
 /// One L D L^T factorization, or none where the network grows rigid from its triangles (grows_rigid).
-/// \throws Error (bad_input) as number_unknowns does; (computation_failed) where the factor would not fit into memory
+/// \throws Error (bad_input) as number_unknowns does; (out_of_memory) where the factor would not fit
 MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                                 std::span<const Support> supports);
 
 /// Negative eigenvalues of K with its free rigid motions and gears held, and those beyond one for each rotation.
 struct InertiaReport {
   std::int64_t negative_pivots = 0;
-  std::int64_t unstable_modes = 0;  ///< -1: the rotations alone are singular
+  std::optional<std::int64_t> unstable_modes = 0;  ///< none: the rotations alone are singular
 };
 InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                            std::span<const Support> supports);

@@ -10,10 +10,15 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
+
+/// Treatment of zero-energy modes.
+enum class Mechanisms {
+  refuse,  ///< an Error that names it
+  hold,    ///< hold as many unknowns as there are such motions: FactorReport::zero_pivots
+};
 
 /// Refuse an assembly that can move without resistance.
 /// \throws Error (bad_input) where there is no disc, a single free disc, a disc without contacts that is not held, a

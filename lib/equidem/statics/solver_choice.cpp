@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,9 +10,7 @@
 #include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
@@ -92,8 +89,8 @@ namespace {
 /// own round-off.
 bool is_mechanism(const System& system, const Factorization& factor) {
   if (factor.report().smallest_pivot > suspicious) return false;
-  const std::vector<double> softest = factor.softest_motion();
-  return !softest.empty() && costs_no_energy(system, system.springs, softest);
+  const auto softest = factor.softest_motion();
+  return softest && costs_no_energy(system, system.springs, *softest);
 }
 
 /// Unknowns may be held only against true zero-energy modes, even where springs differ by many orders of magnitude.
@@ -115,10 +112,10 @@ std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mecha
     factor = multifrontal_ldlt(system.symbolic, system.k, {.threshold = 0.1});
   }
   if (factor->report().zero_pivots > 0) {
-    if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
+    if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion().value());
     check_null_motions(system, *factor);
   } else if (is_mechanism(system, *factor)) {
-    report_singular(system, factor->softest_motion());
+    report_singular(system, factor->softest_motion().value());
   }
   return factor;
 }
@@ -173,22 +170,6 @@ std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& sy
 
 }  // namespace
 
-void check(const SolverOptions& options) {
-  if (options.max_refinements < 0) {
-    bad_input(fmt::format("max_refinements = {}", options.max_refinements), "a number of steps cannot be negative",
-              "Give 0 or more");
-  }
-  if (!(options.memory_limit >= 0)) {
-    bad_input(fmt::format("memory_limit = {}", options.memory_limit),
-              "it must be a number of bytes, or 0 for what is free", "Correct it");
-  }
-  if (options.ordering != CholmodOrdering::equidem && options.method != SolverMethod::cholmod) {
-    bad_input(
-        fmt::format("ordering = \"{}\" beside method = \"{}\"", to_string(options.ordering), to_string(options.method)),
-        "it is an ordering of CHOLMOD", "Use method = \"cholmod\", or leave the ordering out");
-  }
-}
-
 SolverMethod choose_method(const Assembly& assembly, const ContactSprings& springs, const SolverOptions& options) {
   if (options.method != SolverMethod::automatic) return options.method;
   constexpr double many_discs = 2e4;  // up to here multigrid saves less than 50 ms
@@ -199,50 +180,6 @@ SolverMethod choose_method(const Assembly& assembly, const ContactSprings& sprin
   return iterate ? SolverMethod::multigrid : SolverMethod::multifrontal;
 }
 
-SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite) {
-  SolveEstimate result;
-  result.unknowns = unknowns.unknowns;
-  result.factor_nonzeros = symbolic.nonzeros;
-  result.factor_bytes = sizeof(double) * symbolic.panel_entries();
-  result.operations = symbolic.operations;
-  // Beside the factor: update matrices on their way up, of which buffers are kept; L D L^T works in whole fronts.
-  double waiting = 0, largest = 0;
-  std::vector<double> of_children(symbolic.fronts(), 0.0);
-  for (std::size_t t = 0; t < symbolic.fronts(); ++t) {
-    const auto pivots = static_cast<double>(symbolic.pivots(t)), updates = static_cast<double>(symbolic.updates(t));
-    const double update = updates * updates, front = indefinite ? (pivots + updates) * (pivots + updates) : 0;
-    largest = std::max(largest, waiting + update + front);
-    waiting += update - of_children[t];
-    const std::int32_t parent = symbolic.tree.nodes[t].parent;
-    if (parent >= 0) of_children[parent] += update;
-  }
-  // K on the discs and about three contacts each, and the vectors of a solution.
-  const double b = symbolic.block, discs = static_cast<double>(symbolic.position.size());
-  const double system = sizeof(double) * discs * (4 * b * b + 12 * b);
-  // Fronts of L D L^T come in many sizes, and idle buffers are kept: measured.
-  result.peak_bytes = result.factor_bytes + sizeof(double) * (indefinite ? 2.5 : 1) * largest + system;
-  return result;
-}
-
-SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns) {
-  SolveEstimate result;
-  result.unknowns = unknowns.unknowns;
-  result.peak_bytes =
-      bytes_of_multigrid(static_cast<double>(assembly.size()), static_cast<double>(assembly.contacts.size()));
-  return result;
-}
-
-void check_memory(const SolveEstimate& estimate, double memory_limit) {
-  // OpenBLAS maps one for each thread that calls it, and tries for ever where the limit of the process forbids it.
-  constexpr double blas_buffer = 128.0 * (1 << 20);
-  require_address_space(estimate.peak_bytes + blas_buffer * thread_count(),
-                        fmt::format("solving for {} unknowns on {} needs about", grouped(estimate.unknowns),
-                                    counted(thread_count(), "thread")));
-  require_memory(estimate.peak_bytes, fmt::format("solving for {} unknowns needs about", grouped(estimate.unknowns)),
-                 "Use fewer discs, restrain rotation, raise the limit, or take a machine with more memory",
-                 memory_limit);
-}
-
 std::unique_ptr<Factorization> factorize(const System& system, SolverMethod method, Mechanisms mechanisms,
                                          StageTimes& times) {
   const Stopwatch watch;
@@ -251,7 +188,7 @@ std::unique_ptr<Factorization> factorize(const System& system, SolverMethod meth
   return factor;
 }
 
-std::int64_t negative_rotations(const System& system) {
+std::optional<std::int64_t> negative_rotations(const System& system) {
   if (system.unknowns.per_disc != 3 || !system.springs.any_negative()) return 0;
   StiffnessMatrix rotations;
   rotations.block = 1;
@@ -266,7 +203,7 @@ std::int64_t negative_rotations(const System& system) {
   symbolic.block = 1;
   const MatrixOnGraph matrix{rotations, system.k.assembly, system.k.graph};
   const auto factor = multifrontal_ldlt(std::make_shared<const SymbolicFactor>(std::move(symbolic)), matrix);
-  return factor->report().zero_pivots > 0 ? -1 : factor->report().negative_pivots;
+  return factor->report().zero_pivots > 0 ? std::nullopt : factor->report().negative_pivots;
 }
 
 namespace {
@@ -278,14 +215,14 @@ class WithoutModes final : public Factorization {
     report_.zero_pivots = std::ssize(modes_.components());
   }
 
-  void solve(std::span<double> x, int right_hand_sides) const override {
+  void solve(std::span<double> x, int right_hand_sides) override {
     const std::size_t n = x.size() / static_cast<std::size_t>(right_hand_sides);
     for (std::size_t begin = 0; begin < x.size(); begin += n) {
       for (const std::size_t component : modes_.components()) x[begin + component] = 0;
     }
     rest_->solve(x, right_hand_sides);
   }
-  [[nodiscard]] std::vector<double> softest_motion() const override { return modes_.motion(0); }
+  [[nodiscard]] std::optional<std::vector<double>> softest_motion() const override { return modes_.motion(0); }
   [[nodiscard]] std::vector<double> null_motion(std::int64_t k) const override {
     return modes_.motion(static_cast<std::size_t>(k));
   }
@@ -323,7 +260,7 @@ ZeroEnergyModes::ZeroEnergyModes(const System& system)
     }
     constexpr double suspicious = 1e-9;
     if (found.empty() && stage.factor->report().smallest_pivot < suspicious) {
-      const std::vector<double> softest = stage.factor->softest_motion();
+      const std::vector<double> softest = stage.factor->softest_motion().value();
       const auto most = std::ranges::max_element(softest, {}, [](double x) { return std::abs(x); });
       if (is_mode(softest)) found.push_back(static_cast<std::size_t>(most - softest.begin()));
     }
@@ -353,7 +290,7 @@ std::vector<double> ZeroEnergyModes::corrected(const Stage& stage, std::vector<d
 std::vector<double> ZeroEnergyModes::motion(std::size_t k) const {
   const auto stage = std::prev(std::ranges::upper_bound(stages_, k, {}, &Stage::first));
   const Factorization& factor = *stage->factor;
-  if (factor.report().zero_pivots == 0) return factor.softest_motion();
+  if (factor.report().zero_pivots == 0) return factor.softest_motion().value();
   return corrected(*stage, factor.null_motion(static_cast<std::int64_t>(k - stage->first)));
 }
 

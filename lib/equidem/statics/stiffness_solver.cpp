@@ -44,7 +44,7 @@ double norm_of(std::span<const double> x) {
 /// Where the rounding of extended precision could leave a residual that counts, contacts are evaluated in quadruple
 /// precision.
 struct StiffnessSolver::Refinement {
-  const StiffnessSolver& solver;
+  StiffnessSolver& solver;
   const RightHandSide& given;
   double good_enough;
   Solution solution;
@@ -52,7 +52,7 @@ struct StiffnessSolver::Refinement {
   Factorization::Energies energies{};  ///< of the correction that comes next, where the method is iterative
 
   /// \param residual becomes f - f_int of the start, in which held components move and no other
-  Refinement(const StiffnessSolver& solver, const RightHandSide& given, std::span<double> residual, double good_enough);
+  Refinement(StiffnessSolver& solver, const RightHandSide& given, std::span<double> residual, double good_enough);
 
   /// Adds the correction x, which a pass with the factor made of the residual, and replaces x by the new residual.
   void correct(std::span<double> x, int pass);
@@ -78,7 +78,7 @@ struct StiffnessSolver::Refinement {
   double last_step_ = 0;  // size of the last correction, m
 };
 
-StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const RightHandSide& given_in,
+StiffnessSolver::Refinement::Refinement(StiffnessSolver& solver_in, const RightHandSide& given_in,
                                         std::span<double> residual, double good_enough_in)
     : solver(solver_in), given(given_in), good_enough(good_enough_in) {
   const auto& unknowns = solver.unknowns_;
@@ -261,28 +261,28 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
     try {
       iterate(method, times);
     } catch (const Error& error) {
-      eliminate_instead(error, times);
+      fall_back_to_elimination(error, times);
     }
   }
   const Stopwatch watch;
-  judge_inertia();
+  unstable_modes_ = count_unstable_modes();
   times.add("inertia", watch.seconds());
 }
 
-void StiffnessSolver::iterate(SolverMethod method, StageTimes& times) const {
+void StiffnessSolver::iterate(SolverMethod method, StageTimes& times) {
   method_ = method;
   check_memory(estimate_iterations(assembly_, unknowns_), options_.memory_limit);
   factor_ = factorize(system(), method, mechanisms_, times);
 }
 
-void StiffnessSolver::eliminate_instead(const Error& error, StageTimes& times) const {
+void StiffnessSolver::fall_back_to_elimination(const Error& error, StageTimes& times) {
   if (error.kind() != ErrorKind::computation_failed) throw;
   why_method_ = error.problem();
   factor_.reset();
   eliminate(SolverMethod::multifrontal, times);
 }
 
-void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
+void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) {
   method_ = method;
   Stopwatch watch;
   DissectionTree tree = dissect(assembly_, graph_);
@@ -310,16 +310,46 @@ std::string StiffnessSolver::solver_name() const {
   return name;
 }
 
-void StiffnessSolver::judge_inertia() {
-  const std::int64_t negative = factor_->report().negative_pivots;
-  if (!springs_.may_be_indefinite()) {
-    unstable_modes_ = 0;
-  } else if (negative < 0) {
-    unstable_modes_ = -1;
-  } else {
-    const std::int64_t of_rotations = negative_rotations(system());
-    unstable_modes_ = of_rotations < 0 ? -1 : negative - of_rotations;
+SolverFindings StiffnessSolver::findings() const {
+  const FactorReport& report = factor_->report();
+  return {.solver = solver_name(),
+          .unknowns = unknowns_.unknowns,
+          .mechanisms = report.zero_pivots,
+          .negative_pivots = report.negative_pivots,
+          .unstable_modes = unstable_modes_,
+          .iterations = report.iterations,
+          .pivot_growth = report.growth,
+          .factor_nonzeros = report.nonzeros,
+          .factor_bytes = report.bytes};
+}
+
+/// A mechanism deforms no contact: prescribed motions and mean strains do no work on it, loads may.
+std::optional<std::vector<double>> StiffnessSolver::driven_mechanism(std::span<const double> force) const {
+  for (std::int64_t k = 0; !force.empty() && k < factor_->report().zero_pivots; ++k) {
+    std::vector<double> motion = factor_->null_motion(k);
+    if (does_work(force, motion, unknowns_.per_disc)) return motion;
   }
+  return {};
+}
+
+std::string StiffnessSolver::describe_mechanism(std::int64_t k) const {
+  return describe_motion(assembly_, disc_motions(unknowns_, factor_->null_motion(k)));
+}
+
+void StiffnessSolver::refuse_floppy(const std::string& name) const {
+  constexpr std::int64_t most = 1000;
+  const std::int64_t mechanisms = factor_->report().zero_pivots;
+  if (mechanisms <= most) return;
+  bad_input(fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
+            fmt::format("a motion has no energy: {}", describe_mechanism(0)),
+            remedy_of_mechanisms(assembly_, springs_, unknowns_.per_disc == 3));
+}
+
+std::optional<std::int64_t> StiffnessSolver::count_unstable_modes() const {
+  if (!springs_.may_be_indefinite()) return 0;
+  const auto negative = factor_->report().negative_pivots;
+  const auto of_rotations = negative ? negative_rotations(system()) : std::nullopt;
+  return of_rotations ? std::optional(*negative - *of_rotations) : std::nullopt;
 }
 
 double StiffnessSolver::norm_of_free(std::span<const double> x) const {
@@ -338,7 +368,7 @@ void StiffnessSolver::evaluate_residual(const RightHandSide& given, const Precis
 }
 
 void StiffnessSolver::refine(std::span<const RightHandSide> cases, std::vector<Solution>& solutions,
-                             StageTimes& times) const {
+                             StageTimes& times) {
   const double good_enough = entry_of(method_).back_end.good_enough;
   const std::size_t n = unknowns_.held.size();
   LargeVector<double> x(n * cases.size());
@@ -381,7 +411,7 @@ void StiffnessSolver::refine(std::span<const RightHandSide> cases, std::vector<S
   for (Refinement& one : all) solutions.push_back(one.finish());
 }
 
-std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
+std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) {
   std::vector<Solution> solutions;
   const auto solve_all = [&] {
     // Iterations one after another: vectors of one case take as much memory as the grids.
@@ -392,7 +422,7 @@ std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> case
     solve_all();
   } catch (const Error& error) {
     if (method_ == options_.method || !iterative()) throw;
-    eliminate_instead(error, times);
+    fall_back_to_elimination(error, times);
     solutions.clear();
     solve_all();
   }
@@ -416,17 +446,17 @@ double StiffnessSolver::twice_energy(std::span<const double> x) const {
   return 2 * elastic_energy(assembly_, springs_, disc_motions(unknowns_, x));
 }
 
-SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) const {
+SoftestMotion StiffnessSolver::softest_motion(std::span<const double> start) {
   return iterate_inverse(start, {});
 }
 
-double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) const {
+double StiffnessSolver::scaled_inverse_norm(std::span<const double> start) {
   std::vector<double> root = row_sums();
   for (double& value : root) value = std::sqrt(value);
   return iterate_inverse(start, std::move(root)).inverse_norm;
 }
 
-SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, std::vector<double> scale) const {
+SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, std::vector<double> scale) {
   const auto scale_of = [&](std::size_t k) { return unknowns_.held[k] != 0 ? 0.0 : scale.empty() ? 1.0 : scale[k]; };
   std::vector<double> x(start.begin(), start.end());
   x.resize(unknowns_.held.size());
@@ -447,7 +477,9 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
     return size;
   };
   if (!(make_unit() > 0)) return result;
-  for (int pass = 0; pass < 2; ++pass) {
+  // Iterations cost as much as those of the solution: one pass, and the quotient of Rayleigh in place of its growth.
+  const int passes = iterative() ? 1 : 2;
+  for (int pass = 0; pass < passes; ++pass) {
     stop_if_interrupted();
     multiply_by_scale();
     factor_->solve_roughly(x);

@@ -20,6 +20,7 @@
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/number_unknowns.hpp"
+#include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
@@ -47,6 +48,21 @@ struct Solution {
 /// its branch is.
 double normal_rounding(const Assembly& assembly, const Contact& contact);
 
+/// What a solver reports of its matrix and of its factor.
+struct SolverFindings {
+  std::string solver;  ///< the back end and factorization used
+  std::int64_t unknowns = 0;
+  std::int64_t mechanisms = 0;                      ///< that are held: zero pivots of K
+  std::optional<std::int64_t> negative_pivots = 0;  ///< negative eigenvalues of K (Sylvester's law); none: not counted
+  /// Negative eigenvalues beyond those that the rotations bring by themselves where kT < 0 (one each): independent
+  /// unstable motions. 0: the equilibrium is statically stable; none: the solver does not determine it.
+  std::optional<std::int64_t> unstable_modes = 0;
+  std::int64_t iterations = 0;  ///< of all passes together, where the method is iterative
+  double pivot_growth = 0;      ///< largest |L_ij| of the factorization
+  double factor_nonzeros = 0;   ///< entries of L
+  double factor_bytes = 0;
+};
+
 /// A motion of least resistance.
 struct SoftestMotion {
   double inverse_norm =
@@ -54,10 +70,12 @@ struct SoftestMotion {
   std::vector<double> motion;  ///< per component, a unit vector; empty where nothing is free
 };
 
+/// Threads may share one for its constant functions. The others use the factor, or replace it where iterations that
+/// "auto" chose fail: one thread at a time.
 class StiffnessSolver {
  public:
   /// Order, analyze, assemble and factorize. The assembly and the springs must outlive this object.
-  /// \throws Error (computation_failed) where the factor would not fit into memory or K is singular to working
+  /// \throws Error (out_of_memory) where the factor would not fit; (computation_failed) where K is singular to working
   ///         precision;
   ///         (bad_input) naming a mechanism, unless mechanisms are held
   StiffnessSolver(const Assembly& assembly, const ContactSprings& springs, ContactGraph graph,
@@ -65,10 +83,9 @@ class StiffnessSolver {
   StiffnessSolver(const StiffnessSolver&) = delete;  // the factorization may refer to members
   StiffnessSolver& operator=(const StiffnessSolver&) = delete;
 
-  /// One thread at a time may call it: where iterations that "auto" chose fail, K is factorized.
   /// \param times gets "solve" and "refine"
   /// \throws Error (computation_failed) where the residual shows that K is too near to singular, or numbers overflow
-  [[nodiscard]] std::vector<Solution> solve(std::span<const RightHandSide> cases, StageTimes& times) const;
+  [[nodiscard]] std::vector<Solution> solve(std::span<const RightHandSide> cases, StageTimes& times);
 
   /// Residual of the motion rounded to doubles, N/m.
   [[nodiscard]] double rounded_residual(const RightHandSide& given, const PreciseMotion& motion) const;
@@ -77,7 +94,7 @@ class StiffnessSolver {
                                              std::size_t contact) const;
   /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that
   /// `start` has a part in.
-  [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {}) const;
+  [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {});
   /// The following two measure each component by its row of K, D = diag(sum_j |K_ij|), so that soft rotations beside
   /// stiff translations (small kT) are no errors: |D^-1/2 K D^-1/2| <= 1, and the energy of what a motion misses is
   /// at most scaled_residual² scaled_inverse_norm. |D^-1/2 (f - f_int)|, square root of N.
@@ -88,7 +105,7 @@ class StiffnessSolver {
                                              std::span<const Solution> solutions) const;
   /// |D^1/2 K^-1 D^1/2| as softest_motion finds it: a lower bound, mostly within a factor of 2; 0 where nothing is
   /// free.
-  [[nodiscard]] double scaled_inverse_norm(std::span<const double> start) const;
+  [[nodiscard]] double scaled_inverse_norm(std::span<const double> start);
   /// Bound on |v^T dK u|, N, where the normals of contacts are wrong by their rounding (normal_rounding): what
   /// rounding of the geometry does to the motion u along v.
   [[nodiscard]] double rounding_work(const RightHandSide& given, const PreciseMotion& motion,
@@ -100,28 +117,39 @@ class StiffnessSolver {
   [[nodiscard]] const ContactGraph& graph() const { return graph_; }
   [[nodiscard]] const DegreesOfFreedom& unknowns() const { return unknowns_; }
   [[nodiscard]] const Factorization& factor() const { return *factor_; }
+  [[nodiscard]] Factorization& factor() { return *factor_; }
   /// The fronts of the factor; null where the method is iterative.
   [[nodiscard]] const std::shared_ptr<const SymbolicFactor>& symbolic() const { return symbolic_; }
   /// Name of the method, with the reason where "auto" went from iterations to elimination.
   [[nodiscard]] std::string solver_name() const;
+  /// As the solves so far leave them.
+  [[nodiscard]] SolverFindings findings() const;
+  /// A mechanism that is held and on which a load does work; none: there is no such one.
+  /// \param force per component, N/m
+  [[nodiscard]] std::optional<std::vector<double>> driven_mechanism(std::span<const double> force) const;
+  /// The k-th mechanism that is held, in words.
+  [[nodiscard]] std::string describe_mechanism(std::int64_t k) const;
+  /// \param name of the network for the message: "the assembly"
+  /// \throws Error (bad_input) where there are more than 1000 mechanisms
+  void refuse_floppy(const std::string& name) const;
   /// Whether the method is iterative: solutions come with an estimate of their error.
   [[nodiscard]] bool iterative() const { return entry_of(method_).back_end.iterative; }
-  /// Negative eigenvalues beyond those that rotations bring by themselves where kT < 0; -1: not known.
-  [[nodiscard]] std::int64_t unstable_modes() const { return unstable_modes_; }
+  /// Negative eigenvalues beyond those that rotations bring by themselves where kT < 0; none: not known.
+  [[nodiscard]] std::optional<std::int64_t> unstable_modes() const { return unstable_modes_; }
 
  private:
   struct Refinement;
   /// Adds the solutions of the cases, with the factor at hand.
-  void refine(std::span<const RightHandSide> cases, std::vector<Solution>& solutions, StageTimes& times) const;
-  void iterate(SolverMethod method, StageTimes& times) const;
-  void eliminate(SolverMethod method, StageTimes& times) const;
+  void refine(std::span<const RightHandSide> cases, std::vector<Solution>& solutions, StageTimes& times);
+  void iterate(SolverMethod method, StageTimes& times);
+  void eliminate(SolverMethod method, StageTimes& times);
   /// Where iterations that "auto" chose failed. \throws the error itself where it is no failed computation
-  void eliminate_instead(const Error& error, StageTimes& times) const;
+  void fall_back_to_elimination(const Error& error, StageTimes& times);
   [[nodiscard]] System system() const;
-  void judge_inertia();
+  [[nodiscard]] std::optional<std::int64_t> count_unstable_modes() const;
   /// Inverse iteration for |S K^-1 S|, S = diag(scale), the unit matrix where `scale` is empty: the motion is S^-1 x
   /// for the unit vector x that it ends with.
-  [[nodiscard]] SoftestMotion iterate_inverse(std::span<const double> start, std::vector<double> scale) const;
+  [[nodiscard]] SoftestMotion iterate_inverse(std::span<const double> start, std::vector<double> scale);
   void evaluate_residual(const RightHandSide& given, const PreciseMotion& motion, std::span<double> residual) const;
   /// sum_j |K_ij| of every row, Pa.
   [[nodiscard]] std::vector<double> row_sums() const;
@@ -133,13 +161,13 @@ class StiffnessSolver {
   DegreesOfFreedom unknowns_;
   SolverOptions options_;
   Mechanisms mechanisms_;
-  mutable StiffnessMatrix matrix_;  // empty where iterations do without it
+  StiffnessMatrix matrix_;  // empty where iterations do without it
   MatrixOnGraph on_graph_;
-  mutable std::shared_ptr<const SymbolicFactor> symbolic_;
-  mutable SolverMethod method_ = SolverMethod::multifrontal;
-  mutable std::string why_method_;  // why iterations that "auto" chose failed
-  mutable std::unique_ptr<Factorization> factor_;
-  std::int64_t unstable_modes_ = 0;
+  std::shared_ptr<const SymbolicFactor> symbolic_;
+  SolverMethod method_ = SolverMethod::multifrontal;
+  std::string why_method_;  // why iterations that "auto" chose failed
+  std::unique_ptr<Factorization> factor_;
+  std::optional<std::int64_t> unstable_modes_;
 };
 
 }  // namespace equidem

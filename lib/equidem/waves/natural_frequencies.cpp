@@ -88,7 +88,7 @@ class Vibration {
     return held_.size() + static_cast<std::size_t>(solver_->factor().report().zero_pivots);
   }
   /// Orthonormal in the product with M, one after another.
-  [[nodiscard]] std::vector<double> zero_energy_modes_of(const VibrationOperator& a) const {
+  [[nodiscard]] std::vector<double> zero_energy_modes_of(const VibrationOperator& a) {
     std::vector<double> null(a.size() * zero_energy_modes());
     for (std::size_t k = 0; k < zero_energy_modes(); ++k) {
       const std::vector<double> motion =
@@ -106,7 +106,7 @@ class Vibration {
   }
 
   /// x := M^1/2 K^-1 M^1/2 x of vectors one after another, with what was held as it is.
-  void solve(const VibrationOperator& a, std::span<double> x) const {
+  void solve(const VibrationOperator& a, std::span<double> x) {
     constexpr std::size_t at_once = 1 << 13;
     const auto scale = [&] {
       parallel_ranges(a.size(), at_once, [&](std::size_t begin, std::size_t end) {
@@ -126,7 +126,7 @@ class Vibration {
 
  private:
   /// The zero-energy mode that moves a held component by 1, and no other of those held.
-  [[nodiscard]] std::vector<double> freed(std::size_t component) const {
+  [[nodiscard]] std::vector<double> freed(std::size_t component) {
     RightHandSide given;
     given.prescribed.assign(unknowns_.held.size(), 0.0);
     given.prescribed[component] = 1;
@@ -207,7 +207,7 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
       attempt();
     }
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::computation_failed) throw;
+    if (!error.failed()) throw;
     result.why_none = error.problem();
     return result;
   }

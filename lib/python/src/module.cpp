@@ -19,6 +19,7 @@ bool on_main_thread() {
 const char* class_of(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::computation_failed:
+    case ErrorKind::out_of_memory:
       return "ComputationFailed";
     case ErrorKind::bad_input:
       return "BadInput";

@@ -33,7 +33,7 @@ class DenseCholesky final : public Factorization {
     return true;
   }
 
-  void solve(std::span<double> x, int right_hand_sides) const override {
+  void solve(std::span<double> x, int right_hand_sides) override {
     const std::size_t n = components_.size(), stride = x.size() / static_cast<std::size_t>(right_hand_sides);
     for (std::size_t column = 0; column < x.size(); column += stride) {
       std::vector<double> y(n);

@@ -214,32 +214,32 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
     lines.push_back(fmt::format("{}: {}", motion.kind, motion.description));
     described.push_back(Results().set("kind", motion.kind).set("description", motion.description));
   }
-  const std::int64_t motions = r.gear_modes + r.local_mechanisms;
+  const std::int64_t motions = r.gear_modes + r.mechanisms;
   if (motions > 0) {
     lines.push_back(fmt::format(
         "{} without energy ({}, {}){} held: no mean strain drives {}, so the stiffness is the same",
-        counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.local_mechanisms, "other mode"),
+        counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.mechanisms, "other mode"),
         motions > std::ssize(described) ? fmt::format(", {} of them named above,", described.size()) : "",
         motions == 1 ? "it" : "them"));
   }
   if (r.discs_removed == 0 && motions == 0)
     lines.emplace_back(r.unstable_modes > 0 ? "every disc carries load"
                                             : "every disc carries load, and every motion costs energy");
-  if (r.self_stresses >= 0) {
+  if (r.self_stresses) {
     lines.push_back(fmt::format("{} of self-stress: {}",
-                                counted(r.self_stresses, "independent state", "independent states"),
+                                counted(*r.self_stresses, "independent state", "independent states"),
                                 r.self_stresses == 0 ? "statically determinate, forces do not depend on the springs"
                                                      : "so many springs more than rigidity needs"));
   }
   const std::size_t unstable = r.unstable_modes > 0 ? lines.size() : SIZE_MAX;
   if (r.unstable_modes > 0) {
     lines.push_back(fmt::format("UNSTABLE: {} by which the network would give way; this stiffness is no state of rest",
-                                counted(r.unstable_modes, "mode")));
+                                counted(*r.unstable_modes, "mode")));
     if (r.unstable_strains > 0) {
       lines.push_back(fmt::format("{} of the stiffness {} negative: such a mean strain gives energy back",
                                   counted(r.unstable_strains, "eigenvalue"), r.unstable_strains == 1 ? "is" : "are"));
     }
-  } else if (r.unstable_modes < 0) {
+  } else if (!r.unstable_modes) {
     lines.push_back(fmt::format("stability {}", stability_not_known));
   }
   for (const std::string& text : lines) {
@@ -251,7 +251,7 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
       .set("left_out", r.removed)
       .set("mechanisms", described)
       .set("gear_modes", r.gear_modes)
-      .set("local_mechanisms", r.local_mechanisms)
+      .set("local_mechanisms", r.mechanisms)
       .set("self_stresses", known(r.self_stresses))
       .set("negative_pivots", known(r.negative_pivots))
       .set("unstable_modes", known(r.unstable_modes))

@@ -176,7 +176,7 @@ Results pack_estimate_results(const PackCase& resolved) {
                            {.digits = 2});
       if (time.looser > 0) out.note(fmt::format(" at a solid fraction smaller by {}", percent(time.looser)));
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::computation_failed) throw;
+      if (!error.failed()) throw;
       out.set("refusal", error.what())
           .line("time", fmt::format("not predicted: a packing of some of these bodies fails: {}", error.what()));
     }

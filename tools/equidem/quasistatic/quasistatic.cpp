@@ -304,8 +304,8 @@ void add_stability(Results& out, const EventPath& run) {
   std::int64_t unstable = 0, unknown = 0, most = 0;
   for (const BreakEvent& event : run.events()) {
     unstable += event.unstable_modes > 0 ? 1 : 0;
-    unknown += event.unstable_modes < 0 ? 1 : 0;
-    most = std::max(most, event.unstable_modes);
+    unknown += event.unstable_modes ? 0 : 1;
+    most = std::max(most, event.unstable_modes.value_or(0));
   }
   out.line("stability", unstable > 0  ? fmt::format("{} with unstable modes, up to {}: not reached in a test",
                                                     counted(unstable, "state"), most)

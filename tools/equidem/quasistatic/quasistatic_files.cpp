@@ -69,8 +69,7 @@ struct Count {
 
 const std::vector<Count> count_columns = {{"leg", &BreakEvent::leg},
                                           {"contact", &BreakEvent::contact},
-                                          {"ties", &BreakEvent::ties},
-                                          {"unstable_modes", &BreakEvent::unstable_modes}};
+                                          {"ties", &BreakEvent::ties}};
 
 struct StressColumn {
   std::string name;
@@ -99,6 +98,7 @@ Table event_table(const EventPath& run, const BreakageScene& scene) {
   for (std::int64_t k = 0; k < std::ssize(events); ++k) number.push_back(k);
   table.add("event", std::move(number));
   for (const Count& count : count_columns) table.add(count.name, events, count.member);
+  table.add("unstable_modes", events, [](const BreakEvent& event) { return event.unstable_modes.value_or(-1); });
   const auto& contacts = scene.assembly.contacts;
   const auto contact = [&](const BreakEvent& event) { return contacts[static_cast<std::size_t>(event.contact)]; };
   table.add("i", events, [&](const BreakEvent& event) { return contact(event).i; });
@@ -128,6 +128,8 @@ StoredEvents read_events(const std::filesystem::path& path, const EventPath& run
     }
     BreakEvent& event = events[row];
     for (const Count& count : count_columns) event.*count.member = table.integer(row, column.at(count.name));
+    const std::int64_t unstable = table.integer(row, column.at("unstable_modes"));
+    event.unstable_modes = unstable < 0 ? std::nullopt : std::optional(unstable);
     for (const Number& n : numbers(scene.path.driven_by)) event.*n.member = table.number(row, column.at(n.name));
     for (const StressColumn& c : stress_columns) event.stress.*c.member = table.number(row, column.at(c.name));
     event.mode = enum_from<BreakMode>(table.text(row, column.at("mode")));

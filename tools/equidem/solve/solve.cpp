@@ -22,15 +22,15 @@ namespace {
 
 /// The stability of the equilibrium, by the inertia of K.
 std::string stability(const Problem& problem, const Equilibrium& result) {
-  if (result.unstable_modes < 0) return stability_not_known;
+  if (!result.unstable_modes) return stability_not_known;
   if (result.unstable_modes > 0)
     return fmt::format(
         "UNSTABLE: {} beyond one for each rotation; the assembly would give way by so many modes, this "
         "equilibrium is no state of rest",
-        counted(result.unstable_modes, "negative pivot"));
-  if (result.negative_pivots < 0) return "stable: no spring is negative";
+        counted(*result.unstable_modes, "negative pivot"));
+  if (!result.negative_pivots) return "stable: no spring is negative";
   if (result.negative_pivots == 0) return "stable: no negative pivot";
-  return fmt::format("stable: {}, one for each rotation{}", counted(result.negative_pivots, "negative pivot"),
+  return fmt::format("stable: {}, one for each rotation{}", counted(*result.negative_pivots, "negative pivot"),
                      problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
 }
 
@@ -258,15 +258,12 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
   Effects effects;
   std::optional<Error> failure;
   {  // the factorization is not needed beyond the load cases
-    const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
+    EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
     for (const NamedLoads& loads : problem.load_cases) {
       failure = failure_of([&] { results.push_back(solve_case(problem, solver, loads)); });
       if (failure && results.empty()) throw Error(*failure);
       if (!failure) continue;
-      const std::string why = failure->why().empty() ? "" : failure->why() + "; ";
-      failure = Error(failure->kind(), failure->problem(),
-                      fmt::format("{}{} of {} load cases are done", why, results.size(), problem.load_cases.size()),
-                      failure->remedy(), failure->where());
+      failure = failure->because(fmt::format("{} of {} load cases are done", results.size(), problem.load_cases.size()));
       break;
     }
     effects = solver.effects();

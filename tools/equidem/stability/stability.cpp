@@ -83,12 +83,12 @@ void add_inertia(Results& out, const Stability& s) {
   out.line("inertia").add("negative_pivots", "", inertia.negative_pivots, "negative pivot", {Shown::count});
   if (s.critical_load && inertia.negative_pivots > 0 && inertia.negative_pivots == inertia.unstable_modes) {
     out.note(fmt::format(": under its forces at rest the assembly gives way by {}",
-                         counted(inertia.unstable_modes, "mode")));
+                         counted(*inertia.unstable_modes, "mode")));
   } else if (inertia.negative_pivots > 0) {
     out.note(inertia.unstable_modes == 0 ? ", one for each rotation: no translation has lost its stiffness"
              : inertia.unstable_modes > 0
                  ? fmt::format(", {} beyond one for each rotation: the assembly gives way by so many modes",
-                               inertia.unstable_modes)
+                               *inertia.unstable_modes)
                  : "; the rotations alone are singular, so that they cannot be told apart");
   }
   out.set("unstable_modes", known(inertia.unstable_modes));
@@ -160,9 +160,9 @@ void add_growth(Results& out, const Stability& s, bool periodic) {
     out.set("growth_wave_vector", s.survey->growing.at.q);
     out.set("growth_wave_vector_name", s.survey->growing.at.name);
   }
-  if (!s.lowest || rate == 0) out.set("growth_rate", rate);
-  if (!s.lowest) return;
   if (rate == 0) {
+    out.set("growth_rate", rate);
+    if (!s.lowest) return;
     const bool all_waves = !periodic || s.survey;
     out.line("growth", fmt::format("none: some kT are negative, but no motion{} has negative energy",
                                    all_waves ? "" : " that repeats with the cell"));
@@ -170,10 +170,15 @@ void add_growth(Results& out, const Stability& s, bool periodic) {
   }
   out.line("growth").add("growth_rate", "", rate, "1/s in motion: a disturbance grows e-fold in", {.digits = 9});
   out.note(fmt::format(" {:.3g} s", 1 / rate));
-  if (s.survey && s.survey->growing.value >= -s.lowest->value * (1 - 1e-9)) {
+  if (s.survey && (!s.lowest || s.survey->growing.value >= -s.lowest->value * (1 - 1e-9))) {
     const ZoneMaximum& growing = s.survey->growing;
     out.note(", fastest at " + name_of(growing.at, growing.points));
     if (growing.at.name == greek_gamma && s.cell_discs == 1) out.note(": all discs spin alike");
+  }
+  if (!s.lowest) {
+    out.line("", "forces at rest outweigh the springs in such waves: the assembly buckles");
+    out.warn();
+    return;
   }
   out.line("",
            "kT < 0 gives rotations negative stiffness. Statics finds where all forces balance; for the rotations that "

@@ -65,7 +65,7 @@ class Homogenizer {
     try {
       last_ = effective_stiffness(assembly_, springs_of(assembly_, {1, ratio}, how_), options_);
     } catch (const Error& error) {
-      if (error.kind() == ErrorKind::interrupted) throw;
+      if (error.kind() == ErrorKind::interrupted || error.kind() == ErrorKind::out_of_memory) throw;
       failure_ = error;
       return {.ratio = ratio, .stable = false};
     }

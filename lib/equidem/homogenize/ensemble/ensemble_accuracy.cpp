@@ -231,7 +231,7 @@ AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAc
   try {
     if (!sampling.go()) return std::move(result);
   } catch (const Error& error) {
-    if (error.kind() != ErrorKind::computation_failed) throw;
+    if (!error.failed()) throw;
     result.failure = error;
     if (!sampling.has_moduli()) return std::move(result);
   }

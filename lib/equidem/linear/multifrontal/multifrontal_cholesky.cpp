@@ -24,11 +24,11 @@ namespace cholesky_factor {
 /// The smallest pivot found, over the diagonal entry it started from.
 struct PivotWatch {
   double smallest = std::numeric_limits<double>::infinity();
-  std::int64_t component = -1;
+  std::optional<std::size_t> component{};
 
   void merge(const PivotWatch& other) {
     const bool less = other.smallest < smallest ||
-                      (other.smallest == smallest && other.component >= 0 && other.component < component);
+                      (other.smallest == smallest && other.component && other.component < component);
     if (less) *this = other;
   }
 };
@@ -55,7 +55,7 @@ PivotWatch watch_front(const CholeskyFactor& factor, const MatrixOnGraph& k, std
     const double entry = k.matrix.diagonal_block(disc)[(p % b) * (b + 1)];
     const double l = panel.values[p * (panel.rows + 1)];
     const double share = bad != 0 && p + 1 == static_cast<std::size_t>(bad) ? std::min(0.0, l / entry) : l * l / entry;
-    watch.merge({share, static_cast<std::int64_t>(disc * b + p % b)});
+    watch.merge({share, disc * b + p % b});
   }
   return watch;
 }
@@ -132,7 +132,7 @@ bool CholeskyFactor::factorize(const MatrixOnGraph& k) {
   return positive;
 }
 
-void CholeskyFactor::solve(std::span<double> x, int right_hand_sides) const {
+void CholeskyFactor::solve(std::span<double> x, int right_hand_sides) {
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const auto columns = static_cast<std::size_t>(right_hand_sides);
   const std::size_t n = symbolic_->position.size() * b;
@@ -160,13 +160,14 @@ void CholeskyFactor::backward(const Columns& y) const {
   solve_sweep_.down([&](std::size_t t) { backward(t, y); });
 }
 
-std::vector<double> CholeskyFactor::softest_motion() const {
+std::optional<std::vector<double>> CholeskyFactor::softest_motion() const {
+  if (!report_.smallest_component) return {};
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const std::size_t n = symbolic_->position.size() * b;
   LargeVector<double> y(n);
   std::fill(y.begin(), y.end(), 0.0);
   std::vector<double> x(n);
-  const auto component = static_cast<std::size_t>(report_.smallest_component);
+  const std::size_t component = *report_.smallest_component;
   y[symbolic_->position[component / b] * b + component % b] = 1;
   for (std::size_t t = symbolic_->fronts(); t-- > 0;) backward(t, {y.data(), n, 1});
   permute_from_elimination(*symbolic_, y, x);
@@ -211,8 +212,10 @@ class LdltFactor final : public Factorization {
  public:
   LdltFactor(std::shared_ptr<const SymbolicFactor> symbolic, const MatrixOnGraph& k, const IndefiniteOptions& options);
 
-  void solve(std::span<double> x, int right_hand_sides) const override;
-  [[nodiscard]] std::vector<double> softest_motion() const override { return motion_of(softest_); }
+  void solve(std::span<double> x, int right_hand_sides) override;
+  [[nodiscard]] std::optional<std::vector<double>> softest_motion() const override {
+    return softest_ ? std::optional(motion_of(*softest_)) : std::nullopt;
+  }
   [[nodiscard]] std::vector<double> null_motion(std::int64_t k) const override { return motion_of(null_.at(k)); }
   [[nodiscard]] std::vector<std::size_t> null_components() const override;
   [[nodiscard]] const FactorReport& report() const override { return report_; }
@@ -234,6 +237,7 @@ class LdltFactor final : public Factorization {
 
   [[nodiscard]] std::size_t unknowns() const { return symbolic_->position.size() * symbolic_->block; }
   [[nodiscard]] std::vector<double> motion_of(std::int64_t unknown) const;
+  [[nodiscard]] std::size_t component_of(std::int64_t unknown) const;
   void choose_scales(const MatrixOnGraph& k);
   void factorize(const MatrixOnGraph& k);
   void factorize_front_of(std::size_t t, const MatrixOnGraph& k, const Children& children,
@@ -257,8 +261,8 @@ class LdltFactor final : public Factorization {
   std::optional<Sweep> solve_sweep_;  // once the pivots of the fronts are known
   BufferPool pool_;
   FactorReport report_;
-  std::int64_t softest_ = -1;       // unknown of the smallest pivot
-  std::vector<std::int64_t> null_;  // unknowns that nothing holds
+  std::optional<std::int64_t> softest_;  // unknown of the smallest pivot
+  std::vector<std::int64_t> null_;       // unknowns that nothing holds
 };
 
 LdltFactor::LdltFactor(std::shared_ptr<const SymbolicFactor> symbolic, const MatrixOnGraph& k,
@@ -271,7 +275,7 @@ LdltFactor::LdltFactor(std::shared_ptr<const SymbolicFactor> symbolic, const Mat
   write_report();
 }
 
-void LdltFactor::solve(std::span<double> x, int right_hand_sides) const {
+void LdltFactor::solve(std::span<double> x, int right_hand_sides) {
   const dense::OneThreadPerCall one_thread;
   std::vector<double> y(unknowns());
   const std::size_t n = unknowns();
@@ -289,20 +293,21 @@ void LdltFactor::solve(std::span<double> x, int right_hand_sides) const {
 std::vector<double> LdltFactor::motion_of(std::int64_t unknown) const {
   const dense::OneThreadPerCall one_thread;
   std::vector<double> y(unknowns(), 0.0), x(unknowns());
-  if (unknown >= 0) y[unknown] = 1;
+  y[unknown] = 1;
   backward(y);
   scale(y);
   permute_from_elimination(*symbolic_, y, x);
   return x;
 }
 
+std::size_t LdltFactor::component_of(std::int64_t unknown) const {
+  const auto b = static_cast<std::size_t>(symbolic_->block), position = static_cast<std::size_t>(unknown);
+  return static_cast<std::size_t>(symbolic_->tree.order[position / b]) * b + position % b;
+}
+
 std::vector<std::size_t> LdltFactor::null_components() const {
-  const auto b = static_cast<std::size_t>(symbolic_->block);
   std::vector<std::size_t> components;
-  for (const std::int64_t unknown : null_) {
-    const auto position = static_cast<std::size_t>(unknown);
-    components.push_back(static_cast<std::size_t>(symbolic_->tree.order[position / b]) * b + position % b);
-  }
+  for (const std::int64_t unknown : null_) components.push_back(component_of(unknown));
   return components;
 }
 
@@ -433,7 +438,7 @@ void LdltFactor::keep(const Front& front, FrontFactor& factor, LargeVector<doubl
 
 void LdltFactor::write_report() {
   report_.name = "multifrontal L D L^T";
-  report_.negative_pivots = 0;
+  std::int64_t negative = 0;
   report_.smallest_pivot = 1;
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < fronts_.size(); ++t) {
@@ -447,7 +452,7 @@ void LdltFactor::write_report() {
       const double d = f.pivots.diagonal[p], off = f.pivots.off_diagonal[p];
       const bool two = off != 0.0;
       const double e = two ? f.pivots.diagonal[p + 1] : 0.0, determinant = d * e - off * off;
-      report_.negative_pivots += two ? (determinant < 0 ? 1 : (d + e < 0 ? 2 : 0)) : (d < 0 ? 1 : 0);
+      negative += two ? (determinant < 0 ? 1 : (d + e < 0 ? 2 : 0)) : (d < 0 ? 1 : 0);
       const double size =
           two ? std::abs(determinant) / std::max({std::abs(d), std::abs(e), std::abs(off)}) : std::abs(d);
       if (two) ++p;
@@ -459,9 +464,9 @@ void LdltFactor::write_report() {
     smallest = 0;
     softest_ = f.ids[f.pivots.count];
   }
+  report_.negative_pivots = negative;
   report_.smallest_pivot = smallest;
-  const auto b = static_cast<std::int64_t>(symbolic_->block);
-  if (softest_ >= 0) report_.smallest_component = symbolic_->tree.order[softest_ / b] * b + softest_ % b;
+  if (softest_) report_.smallest_component = component_of(*softest_);
 }
 
 void LdltFactor::forward(std::vector<double>& y) const {

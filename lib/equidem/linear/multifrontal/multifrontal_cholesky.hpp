@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,8 @@ class CholeskyFactor final : public Factorization {
   /// Whether all pivots are positive. It can be called again, for another matrix on the same graph.
   bool factorize(const MatrixOnGraph& k);
 
-  void solve(std::span<double> x, int right_hand_sides) const override;
-  [[nodiscard]] std::vector<double> softest_motion() const override;
+  void solve(std::span<double> x, int right_hand_sides) override;
+  [[nodiscard]] std::optional<std::vector<double>> softest_motion() const override;
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
   /// Right-hand sides in the order of elimination, one after another.

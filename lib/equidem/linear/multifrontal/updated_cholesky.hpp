@@ -52,7 +52,7 @@ class UpdatedCholesky {
   /// is solved with the new factor. Stiffness that is added is added first.
   FactorPath change(std::span<const RankOneChange> changes, std::span<const Load> loads = {});
 
-  void solve(std::span<double> x, int right_hand_sides) const { factor_.solve(x, right_hand_sides); }
+  void solve(std::span<double> x, int right_hand_sides) { factor_.solve(x, right_hand_sides); }
   [[nodiscard]] const FactorReport& report() const { return factor_.report(); }
   using Columns = CholeskyFactor::Columns;
   void forward(const Columns& y) const { factor_.forward(y); }

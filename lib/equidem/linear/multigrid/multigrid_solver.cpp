@@ -148,25 +148,24 @@ class MultigridSolver final : public Factorization {
     if (!grows_rigid(network.assembly, network.graph, network.springs, network.unknowns.per_disc)) probe();
   }
 
-  void solve(std::span<double> x, int right_hand_sides) const override {
+  void solve(std::span<double> x, int right_hand_sides) override {
     const std::size_t n = unknowns_.held.size();
     for (std::size_t k = 0; k < static_cast<std::size_t>(right_hand_sides); ++k) {
       report_.iterations += solve_one(x.subspan(k * n, n), {}).iterations;
     }
   }
-  Energies solve_to(double accuracy, double energy, std::span<double> x) const override {
+  Energies solve_to(double accuracy, double energy, std::span<double> x) override {
     const double unit = cycle_->unit();
     const auto report = solve_one(x, {.accuracy = accuracy, .energy = energy / unit});
     report_.iterations += report.iterations;
     return {unit * report.energy, unit * report.energy_error};
   }
-  void solve_roughly(std::span<double> x) const override { static_cast<void>(solve_one(x, {.tolerance = 0.03})); }
+  void solve_roughly(std::span<double> x) override { static_cast<void>(solve_one(x, {.tolerance = 0.03})); }
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
-  /// A rough load works on every motion without stiffness, which loads of the user need not: such a motion would go
-  /// unnoticed.
-  void probe() const {
+  /// A random load excites every null vector, which the user's load may not: that mode would go unnoticed.
+  void probe() {
     constexpr double tolerance = 1e-6;  // below the share of one motion in the rough load of 1e12 unknowns
     Random random(1);
     std::vector<double> load(unknowns_.held.size());
@@ -174,7 +173,7 @@ class MultigridSolver final : public Factorization {
     static_cast<void>(solve_one(load, {.tolerance = tolerance}));
   }
 
-  multigrid::IterationReport solve_one(std::span<double> x, multigrid::IterationOptions options) const {
+  multigrid::IterationReport solve_one(std::span<double> x, multigrid::IterationOptions options) {
     options.max_iterations = max_iterations_;
     CycleVectors vectors(*cycle_, unknowns_, x);
     const auto report = multigrid::iterate(vectors, options);
@@ -190,14 +189,14 @@ class MultigridSolver final : public Factorization {
       case multigrid::IterationOutcome::singular:
         break;
     }
-    computation_failed("method 'multigrid' met a motion that costs no energy", "iterations do not show which",
+    computation_failed("method 'multigrid' found a zero-energy mode", "iterations do not show which",
                        "Use method = \"multifrontal\", which names the motion");
   }
 
   const DegreesOfFreedom& unknowns_;
   int max_iterations_;
   std::unique_ptr<multigrid::Cycle> cycle_;
-  mutable FactorReport report_;
+  FactorReport report_;
 };
 
 }  // namespace

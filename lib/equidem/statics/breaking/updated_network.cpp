@@ -13,6 +13,7 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
@@ -23,7 +24,6 @@ constexpr std::size_t contacts_at_once = 1 << 11, discs_at_once = 1 << 9, entrie
 /// Of motions, |x| over |u| in the norm of energy: mean stresses are wrong by no more, forces of contacts that carry
 /// more than others by about as much; load factors and stresses are to have nine digits.
 constexpr double most_wrong = 5e-11;
-constexpr double left_of_reactions = 1e-8;  // over the size of the load: what round-off leaves of a reaction
 
 double product(std::span<const double> a, std::span<const double> b) {
   return sums_over<1>(a.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
@@ -222,8 +222,8 @@ bool UpdatedNetwork::factorize() {
       matrix.diagonal[held.component / b * b * b + held.component % b * (b + 1)] += held.stiffness;
     const bool first = ++counters_.factorizations == 1;
     if (factor_.factorize({matrix, assembly_, graph_})) return true;
-    if (first || factor_.report().smallest_component < 0) return false;
-    hold(factor_.report().smallest_component);
+    if (first || !factor_.report().smallest_component) return false;
+    hold(static_cast<std::int64_t>(*factor_.report().smallest_component));
   }
   return false;
 }
@@ -237,7 +237,7 @@ HeldMechanism UpdatedNetwork::mechanism_at(std::int64_t component) {
   HeldMechanism mechanism{component};
   for (std::size_t p = 0; p < cases_.size(); ++p) {
     const double reaction = column(unbalanced_, p)[place_of(component)];
-    if (std::abs(reaction) > left_of_reactions * scales_[p]) mechanism.driven = true;
+    if (std::abs(reaction) > negligible_reaction * scales_[p]) mechanism.driven = true;
   }
   carried_ = carried_ && !mechanism.driven;
   return mechanism;
@@ -411,7 +411,7 @@ EquilibriumSums UpdatedNetwork::sums() const {
 // With K + s e e^T, which holds one component of a mechanism, K v + s e e.v = e has the mechanism for a solution. Where
 // round-off has left a pivot in place of it, solutions turn to it: their other parts are smaller by that pivot over the
 // next stiffness, each time. What the factor is wrong by is then corrected with the forces of the contacts.
-std::vector<DiscMotion> UpdatedNetwork::driven_mechanism(std::int64_t component) const {
+std::vector<DiscMotion> UpdatedNetwork::driven_mechanism(std::int64_t component) {
   constexpr int most_solutions = 3, most_corrections = 2;
   const auto scaled_to_one = [](std::vector<double>& x) {
     double largest = 0;

@@ -80,7 +80,7 @@ class UpdatedNetwork {
   /// network carries none of them.
   /// \param component held in place of a mechanism; -1: the softest motion that the loads find
   /// \return per disc; empty where there is no such motion
-  [[nodiscard]] std::vector<DiscMotion> driven_mechanism(std::int64_t component) const;
+  [[nodiscard]] std::vector<DiscMotion> driven_mechanism(std::int64_t component);
 
   [[nodiscard]] const ContactSprings& springs() const { return springs_; }
   [[nodiscard]] const UpdateCounters& counters() const { return counters_; }
