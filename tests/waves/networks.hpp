@@ -11,6 +11,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/waves/bloch.hpp"
 #include "equidem/waves/brillouin_zone.hpp"
@@ -37,6 +38,19 @@ inline Assembly random_cell(std::int64_t discs, std::uint64_t seed) {
   options.radii = {0.8, 1.2};
   options.periodic = true;
   return delaunay_assembly(options);
+}
+
+/// The springs with the geometric stiffness of forces at rest: `share` of kN times the length of each contact, by its
+/// direction, so that they repeat with the contacts.
+inline ContactSprings under_forces(Assembly assembly, const ContactSprings& springs, double share) {
+  if (share == 0) return springs;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Vec2 l = assembly.branch(assembly.contacts[c]);
+    const double twice = 2 * std::atan2(l.y, l.x), size = share * springs[c].kN * norm(l);
+    assembly.contact_normal_force.push_back(size * (0.3 + std::cos(twice)));
+    assembly.contact_tangential_force.push_back(0.4 * size * std::sin(twice));
+  }
+  return springs.with_prestress(prestress_of(assembly));
 }
 
 /// The assembly nx x ny times over, discs, contacts and their order shuffled and ends of contacts swapped at random.

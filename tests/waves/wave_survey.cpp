@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/waves/stability.hpp"
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -31,6 +32,60 @@ TEST_CASE("the_sound_of_long_waves_is_that_of_the_homogenized_continuum") {
     CAPTURE(assembly.kind, assembly.size(), ratio, angle, rotation == Rotation::free);
     CHECK(found.longitudinal_squared == Approx(expected.longitudinal_squared).epsilon(1e-10));
     CHECK(found.transverse_squared == Approx(expected.transverse_squared).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("the_sound_under_forces_at_rest_is_that_of_the_strained_continuum") {
+  Assembly assembly = GENERATE(periodic_hexagonal(3, 4), periodic_square(3, 3), random_cell(10, 1), random_cell(40, 2));
+  const std::size_t strain = GENERATE(0U, 1U, 2U);
+  const ContactSprings bare(SpringConstants{2, 0.8});
+  const StrainedState at_rest = strained_states(assembly, bare, effective_stiffness(assembly, bare), -0.02).at(strain);
+  for (const ContactForce& f : at_rest.forces) {
+    assembly.contact_normal_force.push_back(f.normal);
+    assembly.contact_tangential_force.push_back(f.tangential);
+  }
+  const ContactSprings springs = bare.with_prestress(prestress_of(assembly));
+  const BlochWaves waves(primitive_cell(assembly, springs), unit_masses(assembly), true);
+  const EffectiveStiffness homogenized = effective_stiffness(assembly, springs);
+  const BlochWaves unloaded(primitive_cell(assembly, bare), unit_masses(assembly), true);
+  double change = 0;
+  for (const double angle : {0.0, 0.4, 0.8, 1.3, 2.5}) {
+    const Vec2 n{std::cos(angle), std::sin(angle)};
+    const auto found = waves.sound_speeds(n);
+    const PlaneWaves expected = plane_waves(homogenized.gradient_stiffness, waves.mass_per_area(), n);
+    CAPTURE(assembly.kind, assembly.size(), strain, angle);
+    CHECK(found.longitudinal_squared == Approx(expected.longitudinal_squared).epsilon(1e-10));
+    CHECK(found.transverse_squared == Approx(expected.transverse_squared).epsilon(1e-10));
+    const double without = unloaded.sound_speeds(n).transverse_squared;
+    change = std::max(change, std::abs(found.transverse_squared / without - 1));
+  }
+  CHECK(change > 1e-3);
+}
+
+TEST_CASE("a_compressed_lattice_buckles_by_the_wave_that_its_forces_outweigh") {
+  // Rows along x under N0 < 0: a transverse wave along x has the stiffness 2 (kT + N0/l) (1 - cos ql) where no disc
+  // turns.
+  Assembly lattice = periodic_square(2, 2);
+  constexpr double kT = 0.1, diameter = 2;
+  for (const double share : {0.9, 1.1}) {
+    lattice.contact_normal_force.clear();
+    for (const Contact& contact : lattice.contacts) {
+      const bool along_x = std::abs(lattice.branch(contact).x) > 1;
+      lattice.contact_normal_force.push_back(along_x ? -share * kT * diameter : 0.0);
+    }
+    lattice.contact_tangential_force.assign(lattice.contacts.size(), 0.0);
+    const ContactSprings springs = ContactSprings({1, kT}).with_prestress(prestress_of(lattice));
+    const Stability s = analyze_stability(lattice, springs, {}, {.rotation = Rotation::restrained, .density = 1});
+    REQUIRE(s.survey);
+    const double mass = s.survey->mass_per_area * lattice.area() / static_cast<double>(lattice.size());
+    const double at_edge = 4 * kT * (share - 1) / mass;
+    CAPTURE(share, s.survey->growing.value, at_edge, s.survey->growing.at.name);
+    CHECK(s.status() == (share > 1 ? "unstable" : "stable"));
+    CHECK_FALSE(s.survey->ratio_sought);
+    if (share > 1) {
+      CHECK(s.survey->growing.value == Approx(at_edge).epsilon(1e-9));
+      CHECK(s.growth_rate() == Approx(std::sqrt(at_edge)).epsilon(1e-9));
+    }
   }
 }
 

@@ -21,6 +21,8 @@ BlochWaves::BlochWaves(PrimitiveCell cell, const std::vector<Inertia>& inertia, 
     if (turns_against(contact.frame.lever_i, contact.frame.offset_i, kT)) turned[contact.i] = 1;
     if (turns_against(contact.frame.lever_j, contact.frame.offset_j, kT)) turned[contact.j] = 1;
     if (contact.kM > 0) turned[contact.i] = turned[contact.j] = 1;
+    if (contact.prestress && turns_i(*contact.prestress, contact.frame)) turned[contact.i] = 1;
+    if (contact.prestress && turns_j(*contact.prestress, contact.frame)) turned[contact.j] = 1;
   }
   for (std::size_t d = 0; d < cell_.size(); ++d) {
     const Inertia& body = inertia[cell_.discs[d]];

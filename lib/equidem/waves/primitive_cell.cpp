@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/waves/primitive_cell.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -38,17 +40,28 @@ std::array<Vec2, 2> reduced(Vec2 a, Vec2 b) {
   return {clean(a), clean(b)};
 }
 
-/// A contact seen from one of its discs.
-struct Bond {
-  std::int32_t other;
-  Vec2 branch;  ///< from this disc
-  ContactFrame frame;
-  SpringConstants springs;
-  double kM;
-};
+CellContact contact_of(const Assembly& assembly, const ContactSprings& springs, std::size_t number) {
+  const Contact& contact = assembly.contacts[number];
+  CellContact all{contact.i,
+                  contact.j,
+                  assembly.branch(contact),
+                  frame_of(assembly, number),
+                  springs[number],
+                  springs.bending(number)};
+  if (const ContactPrestress* const prestress = springs.prestress(number)) all.prestress = *prestress;
+  return all;
+}
 
-ContactFrame seen_from_j(const ContactFrame& frame) {
-  return {-frame.normal, frame.lever_j, frame.lever_i, frame.offset_j, frame.offset_i};
+/// The contact with its bodies in the other order: stretch and slip stay, rotations change places.
+CellContact seen_from_j(const CellContact& c) {
+  const ContactFrame& f = c.frame;
+  CellContact other{c.j, c.i, -c.branch, {-f.normal, f.lever_j, f.lever_i, f.offset_j, f.offset_i}, c.springs, c.kM};
+  if (c.prestress) {
+    const ContactPrestress& g = *c.prestress;
+    other.prestress = {
+        .ns = g.ns, .ni = g.nj, .nj = g.ni, .ss = g.ss, .si = g.sj, .sj = g.si, .ii = g.jj, .ij = g.ij, .jj = g.ii};
+  }
+  return other;
 }
 
 /// Finds the disc at a place of a periodic assembly.
@@ -110,14 +123,12 @@ class TranslationGroup {
                                                     std::max(assembly.period->x, assembly.period->y))),
         stiffness_(springs.largest()),
         finder_(assembly, distance_),
-        bonds_(assembly.size()),
+        contacts_(assembly.size()),
         orbit_(assembly.size()) {
     for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-      const Contact& contact = assembly.contacts[c];
-      const Vec2 l = assembly.branch(contact);
-      const ContactFrame frame = frame_of(assembly, c);
-      bonds_[contact.i].push_back({contact.j, l, frame, springs[c], springs.bending(c)});
-      bonds_[contact.j].push_back({contact.i, -l, seen_from_j(frame), springs[c], springs.bending(c)});
+      const CellContact contact = contact_of(assembly, springs, c);
+      contacts_[contact.i].push_back(contact);
+      contacts_[contact.j].push_back(seen_from_j(contact));
     }
     std::iota(orbit_.begin(), orbit_.end(), 0);
     find();
@@ -139,9 +150,11 @@ class TranslationGroup {
     cell.copies = copies;
     cell.rotation_scale = length_;
     for (const std::int32_t d : cell.discs) {
-      for (const Bond& bond : bonds_[d]) {
-        if (!points_up(bond.branch)) continue;  // else it is seen from its other end
-        cell.contacts.push_back({index[d], index[root(bond.other)], bond.branch, bond.frame, bond.springs, bond.kM});
+      for (const CellContact& contact : contacts_[d]) {
+        if (!points_up(contact.branch)) continue;  // else it is seen from its other end
+        cell.contacts.push_back(contact);
+        cell.contacts.back().i = index[d];
+        cell.contacts.back().j = index[root(contact.j)];
       }
     }
     const auto lattice = lattice_of(copies);
@@ -167,10 +180,20 @@ class TranslationGroup {
            alike(a.offset_i, b.offset_i, length_) && alike(a.offset_j, b.offset_j, length_) &&
            (assembly_.contact_arms.empty() || norm(a.normal - b.normal) <= 2 * tolerance);
   }
-  [[nodiscard]] bool alike(const Bond& a, const Bond& b) const {
+  [[nodiscard]] bool alike(const std::optional<ContactPrestress>& a, const std::optional<ContactPrestress>& b) const {
+    const auto all_alike = [&](std::initializer_list<double ContactPrestress::*> entries, double unit) {
+      return std::all_of(entries.begin(), entries.end(), [&](auto e) { return alike(*a.*e, *b.*e, unit); });
+    };
+    using P = ContactPrestress;
+    return !a || !b ||
+           (all_alike({&P::ns, &P::ss}, stiffness_) &&
+            all_alike({&P::ni, &P::nj, &P::si, &P::sj}, stiffness_ * length_) &&
+            all_alike({&P::ii, &P::ij, &P::jj}, stiffness_ * length_ * length_));
+  }
+  [[nodiscard]] bool alike(const CellContact& a, const CellContact& b) const {
     return norm(a.branch - b.branch) <= 2 * distance_ && alike(a.frame, b.frame) &&
            alike(a.springs.kN, b.springs.kN, stiffness_) && alike(a.springs.kT, b.springs.kT, stiffness_) &&
-           alike(a.kM, b.kM, std::max(a.kM, b.kM));
+           alike(a.kM, b.kM, std::max(a.kM, b.kM)) && alike(a.prestress, b.prestress);
   }
   /// Whether two bodies have equal radius, area and polar moment.
   [[nodiscard]] bool alike_bodies(std::int32_t d, std::int32_t e) const {
@@ -180,12 +203,12 @@ class TranslationGroup {
     return alike(of_d.area, of_e.area, of_d.area) && alike(of_d.polar_moment, of_e.polar_moment, of_d.polar_moment);
   }
   [[nodiscard]] bool alike(std::int32_t d, std::int32_t e) const {
-    const auto &of_d = bonds_[d], &of_e = bonds_[e];
+    const auto &of_d = contacts_[d], &of_e = contacts_[e];
     if (!alike_bodies(d, e) || of_d.size() != of_e.size()) return false;
     std::vector<char> used(of_e.size(), 0);
-    return std::all_of(of_d.begin(), of_d.end(), [&](const Bond& bond) {
+    return std::all_of(of_d.begin(), of_d.end(), [&](const CellContact& contact) {
       for (std::size_t k = 0; k < of_e.size(); ++k) {
-        if (used[k] != 0 || !alike(bond, of_e[k])) continue;
+        if (used[k] != 0 || !alike(contact, of_e[k])) continue;
         used[k] = 1;
         return true;
       }
@@ -196,10 +219,10 @@ class TranslationGroup {
   /// A number that discs share which a translation could map onto each other.
   [[nodiscard]] double fingerprint(std::int32_t d) const {
     double sum = assembly_.radii[d] / length_;
-    for (const Bond& bond : bonds_[d]) {
-      const Vec2 l = bond.branch;
-      sum += (norm(l) + 0.3 * (l.x * l.x - l.y * l.y) / norm(l) + 0.7 * bond.frame.lever_i) / length_ +
-             (0.6 * bond.springs.kN + 0.9 * bond.springs.kT) / stiffness_;
+    for (const CellContact& contact : contacts_[d]) {
+      const Vec2 l = contact.branch;
+      sum += (norm(l) + 0.3 * (l.x * l.x - l.y * l.y) / norm(l) + 0.7 * contact.frame.lever_i) / length_ +
+             (0.6 * contact.springs.kN + 0.9 * contact.springs.kT) / stiffness_;
     }
     return sum;
   }
@@ -268,9 +291,9 @@ class TranslationGroup {
   const Assembly& assembly_;
   double length_, distance_, stiffness_;
   DiscFinder finder_;
-  std::vector<std::vector<Bond>> bonds_;
-  std::vector<std::int32_t> orbit_;  // parent of each disc in the forest of orbits
-  std::vector<Vec2> translations_;   // that generate the group
+  std::vector<std::vector<CellContact>> contacts_;  // of each disc, which is i
+  std::vector<std::int32_t> orbit_;                 // parent of each disc in the forest of orbits
+  std::vector<Vec2> translations_;                  // that generate the group
 };
 
 }  // namespace
@@ -282,11 +305,7 @@ PrimitiveCell given_cell(const Assembly& assembly, const ContactSprings& springs
   cell.discs.resize(assembly.size());
   std::iota(cell.discs.begin(), cell.discs.end(), 0);
   cell.rotation_scale = assembly.mean_radius();
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    const Contact& contact = assembly.contacts[c];
-    cell.contacts.push_back(
-        {contact.i, contact.j, assembly.branch(contact), frame_of(assembly, c), springs[c], springs.bending(c)});
-  }
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) cell.contacts.push_back(contact_of(assembly, springs, c));
   return cell;
 }
 

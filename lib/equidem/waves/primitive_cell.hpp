@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -22,13 +23,17 @@ struct CellContact {
   Vec2 branch;         ///< m, from i to the image of j that it touches: all that a phase exp(i q.l) needs
   ContactFrame frame;  ///< normal, levers and offsets
   SpringConstants springs;
-  double kM = 0;  ///< bending spring, N m/rad per metre of depth
+  double kM = 0;                                ///< bending spring, N m/rad per metre of depth
+  std::optional<ContactPrestress> prestress{};  ///< none: forces at rest do not count
 
+  /// The contact must outlive it.
   [[nodiscard]] ContactStiffness stiffness(double rotation_scale) const {
     return {.ends = end_gradients(frame, rotation_scale),
             .kN = springs.kN,
             .kT = springs.kT,
-            .kM = kM / (rotation_scale * rotation_scale)};
+            .kM = kM / (rotation_scale * rotation_scale),
+            .prestress = prestress ? &*prestress : nullptr,
+            .rotation_scale = rotation_scale};
   }
 };
 
@@ -50,6 +55,10 @@ struct PrimitiveCell {
   [[nodiscard]] bool bends() const {
     return std::any_of(contacts.begin(), contacts.end(), [](const CellContact& c) { return c.kM > 0; });
   }
+  /// Whether forces at rest count.
+  [[nodiscard]] bool prestressed() const {
+    return std::any_of(contacts.begin(), contacts.end(), [](const CellContact& c) { return c.prestress.has_value(); });
+  }
   [[nodiscard]] double area() const { return cross(period[0], period[1]); }
 };
 
@@ -57,11 +66,10 @@ struct PrimitiveCell {
 /// \throws Error (bad_input) where the assembly is not periodic
 PrimitiveCell given_cell(const Assembly& assembly, const ContactSprings& springs);
 
-/// The smallest cell: all translations that map centres, radii, sections, contacts, their places and springs onto
-/// themselves to 1e-9 (of the mean radius, of the largest spring) are found; one disc is left of a lattice however many
-/// the assembly has. The assembly itself where none maps it. Linear in the number of discs where none does, else n log
-/// n.
-/// \throws Error (bad_input) where the assembly is not periodic
+/// The smallest cell: all translations that map centres, radii, sections, contacts, their places, springs and
+/// forces at rest onto themselves to 1e-9 (of the mean radius, of the largest spring) are found; one disc is left of a
+/// lattice however many the assembly has. The assembly itself where none maps it. Linear in the number of discs where
+/// none does, else n log n. \throws Error (bad_input) where the assembly is not periodic
 PrimitiveCell primitive_cell(const Assembly& assembly, const ContactSprings& springs);
 
 }  // namespace equidem

@@ -166,21 +166,17 @@ NaturalFrequencies frequencies_at_rest(const Assembly& assembly, const ContactSp
                              {.count = options.natural_frequencies, .solver = options.solver});
 }
 
-/// Time steps are those of the springs: forces at rest change the highest frequency by a share of |N0|/(kN l). Waves
-/// and the critical kT/kN may depend on them, and are left out.
-void add_with_prestress(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
-                        const std::vector<Inertia>& inertia, const StabilityOptions& options, Stability& s) {
+/// Time steps are those of the springs: forces at rest change the highest frequency by a share of |N0|/(kN l).
+void add_frequencies_at_rest(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                             const std::vector<Inertia>& inertia, const StabilityOptions& options, Stability& s) {
   StabilityOptions of_springs = options;
   of_springs.natural_frequencies = 0;
   add_frequencies(assembly, springs.with_prestress({}), supports, inertia, of_springs, s);
-  if (options.natural_frequencies > 0) {
-    Stopwatch watch;
-    s.natural = frequencies_at_rest(assembly, springs, supports, inertia, options, s);
-    s.times.add("natural frequencies", watch.lap());
-  }
+  if (options.natural_frequencies == 0) return;
+  Stopwatch watch;
+  s.natural = frequencies_at_rest(assembly, springs, supports, inertia, options, s);
+  s.times.add("natural frequencies", watch.lap());
   s.reached = StabilityStage::natural_frequencies;
-  s.critical = {.sought = false, .searched = "forces at rest count, and do not change with kT/kN"};
-  s.reached = StabilityStage::critical_ratio;
 }
 
 /// The stages behind the inertia.
@@ -192,10 +188,10 @@ void find_stages(const Assembly& assembly, const ContactSprings& springs, std::s
                                          {.rotation = options.rotation, .memory_limit = options.solver.memory_limit});
     s.times.add("critical load", watch.lap());
     s.reached = StabilityStage::critical_load;
-    add_with_prestress(assembly, springs, supports, inertia, options, s);
-    return;
+    add_frequencies_at_rest(assembly, springs, supports, inertia, options, s);
+  } else {
+    add_frequencies(assembly, springs, supports, inertia, options, s);
   }
-  add_frequencies(assembly, springs, supports, inertia, options, s);
   watch.lap();
   if (assembly.periodic()) {
     add_waves(assembly, springs, inertia, options.rotation, s);
@@ -205,7 +201,9 @@ void find_stages(const Assembly& assembly, const ContactSprings& springs, std::s
     s.times.add("continuum", watch.lap());
     s.reached = StabilityStage::continuum;
   }
-  s.critical = find_critical_motion(assembly, springs, supports, s.survey, options);
+  s.critical = springs.prestressed()
+                   ? CriticalMotion{.sought = false, .searched = "forces at rest count, and do not change with kT/kN"}
+                   : find_critical_motion(assembly, springs, supports, s.survey, options);
   s.times.add("critical ratio", watch.lap());
   s.reached = StabilityStage::critical_ratio;
 }
@@ -215,12 +213,13 @@ void find_stages(const Assembly& assembly, const ContactSprings& springs, std::s
 std::string Stability::status() const {
   if (mechanisms.count() > 0 || (survey && !survey->free_waves.empty())) return "mechanism";
   const bool below = critical.sought && ratio && *ratio < 0 && *ratio <= critical.ratio;
-  return inertia.unstable_modes != 0 || below ? "unstable" : "stable";
+  const bool buckles = critical_load && growth_rate() > 0;
+  return inertia.unstable_modes != 0 || below || buckles ? "unstable" : "stable";
 }
 
 double Stability::growth_rate() const {
   double squared = lowest ? std::max(0.0, -lowest->value) : 0;
-  if (lowest && survey) squared = std::max(squared, survey->growing.value);
+  if (survey) squared = std::max(squared, survey->growing.value);
   constexpr double round_off = 1e-12;  // of the bound on omega², in motions without energy
   return squared > round_off * element_bound ? std::sqrt(squared) : 0;
 }

@@ -117,7 +117,8 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
       std::any_of(cell.contacts.begin(), cell.contacts.end(), [](const CellContact& c) { return c.springs.kT < 0; });
   WaveSurvey survey;
   const bool on_lines = cell.on_lines_of_centres();
-  survey.ratio_sought = on_lines && !cell.bends();
+  const bool prestressed = cell.prestressed();
+  survey.ratio_sought = on_lines && !cell.bends() && !prestressed;
   const bool turned = turns && (any_tangential || !on_lines);
   const BlochWaves in_motion(cell, inertia, turned), at_rest(cell, inertia, turns);
   survey.cell = cell;
@@ -142,8 +143,10 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
     add_long_waves(at_rest, survey.zone, survey.critical);
   }
   survey.highest = over_zone([&](Vec2 q) { return in_motion.squared_frequencies(q).back(); }, 0.7);
-  if (any_negative) survey.growing = over_zone([&](Vec2 q) { return -in_motion.squared_frequencies(q).front(); }, 0.9);
-  survey.free_waves = find_free_waves({with_unit_springs(cell), inertia, turned}, survey.zone, survey.grid);
+  if (any_negative || prestressed)
+    survey.growing = over_zone([&](Vec2 q) { return -in_motion.squared_frequencies(q).front(); }, 0.9);
+  if (!prestressed)
+    survey.free_waves = find_free_waves({with_unit_springs(cell), inertia, turned}, survey.zone, survey.grid);
 
   survey.path = path_of(survey.zone, steps_of_segment(cell));
   parallel_tasks(survey.path.size(), [&](std::size_t k, int) {

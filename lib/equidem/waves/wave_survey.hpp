@@ -36,13 +36,14 @@ struct WaveSurvey {
   PrimitiveCell cell;
   BrillouinZone zone;
   double mass_per_area = 0;  ///< kg/m²
-  bool ratio_sought = true;  ///< false: contacts lie off the lines of centres or bend, and no critical ratio was sought
+  bool ratio_sought = true;  ///< false: contacts lie off the lines of centres, bend or carry forces that count
   int grid = 0;              ///< wave vectors along each reciprocal vector
   ZoneMaximum critical;      ///< of r_c: the wave that loses its stiffness first as kT/kN falls from 0
   ZoneMaximum highest;       ///< of omega²
-  ZoneMaximum growing;       ///< of -omega²: positive where waves grow; not searched where no kT < 0
+  ZoneMaximum growing;       ///< of -omega²: positive where waves grow; not searched where K is no sum of squares
   /// On the grid and at the points of symmetry other than Gamma: wave vectors of waves that neither stretch nor slip
-  /// any contact, kT of either sign counted by its size. Such waves are mechanisms of the infinite assembly.
+  /// any contact, kT of either sign counted by its size. Such waves are mechanisms of the infinite assembly; not
+  /// searched where forces at rest count.
   std::vector<Vec2> free_waves;
   std::vector<PathPoint> path;
   std::vector<SoundAlong> sound;  ///< every 15 degrees from 0 to 165
