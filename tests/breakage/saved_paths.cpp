@@ -52,12 +52,13 @@ TEST_CASE("numbers_of_a_state_with_other_members_are_refused") {
   std::int64_t events = 3;
   std::vector<std::int64_t> contacts{4, 5};
   PathNumbers numbers;
-  numbers.pass(load, events, contacts);
-  const auto restored = [&](auto&... members) {
+  EQUIDEM_PASS(numbers, load, events, contacts);
+  const auto named = [&](const char* names, auto&... members) {
     PathNumbers kept(numbers.numbers());
-    kept.pass(members...);
+    kept.pass(names, members...);
     kept.check_end();
   };
+  const auto restored = [&](auto&... members) { named("load, events, contacts", members...); };
   restored(load, events, contacts);
   CHECK(load == 1.5);
   CHECK(events == 3);
@@ -67,6 +68,7 @@ TEST_CASE("numbers_of_a_state_with_other_members_are_refused") {
   CHECK_THROWS_AS(restored(load, events, lengths), Error);
   CHECK_THROWS_AS(restored(load, events), Error);
   CHECK_THROWS_AS(restored(load, events, contacts, other), Error);
+  CHECK_THROWS_AS(named("motion, events, contacts", load, events, contacts), Error);
 }
 
 TEST_CASE("a_path_that_is_restored_goes_on_with_the_same_bits") {

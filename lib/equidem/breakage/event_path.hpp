@@ -42,15 +42,16 @@ struct BreakEvent {
   /// N, what the crack takes: energy_before - energy_after and the work of the loads while it is released.
   double energy_released = 0;
   double work = 0;  ///< N, of everything from outside, from the unloaded state to behind this event
-  double load_rate = 0, motion_rate = 0;  ///< of lambda, of the network with the contact
+  double load_rate = 0, motion_rate = 0;         ///< of lambda, of the network with the contact
   std::optional<std::int64_t> unstable_modes{};  ///< of the network with the contact; none: not known
-  double relative_residual = 0;           ///< of the state at which it breaks
-  std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it and carry nothing behind it
-  double friction = 0;                    ///< N, lost by slip so far where contacts have friction; else 0
+  double relative_residual = 0;                  ///< of the state at which it breaks
+  std::vector<std::int32_t> loosened{};          ///< discs that leave the network with it and carry nothing behind it
+  double friction = 0;                           ///< N, lost by slip so far where contacts have friction; else 0
 
   void pass(PathNumbers& n) {
-    n.pass(leg, lambda, contact, mode, ties, gap, load, motion, stress, energy_before, energy_after, energy_released);
-    n.pass(work, load_rate, motion_rate, unstable_modes, relative_residual, loosened, friction);
+    EQUIDEM_PASS(n, leg, lambda, contact, mode, ties, gap, load, motion, stress, energy_before, energy_after,
+                 energy_released);
+    EQUIDEM_PASS(n, work, load_rate, motion_rate, unstable_modes, relative_residual, loosened, friction);
   }
 };
 
@@ -89,7 +90,7 @@ struct LegPoint {
   double load_rate = 0, motion_rate = 0;  ///< of lambda, as it was reached
   std::optional<Tensor2> stress{};        ///< Pa; none: not known
 
-  void pass(PathNumbers& n) { n.pass(events_before, lambda, load, motion, load_rate, motion_rate, stress); }
+  void pass(PathNumbers& n) { EQUIDEM_PASS(n, events_before, lambda, load, motion, load_rate, motion_rate, stress); }
 };
 
 /// Work of everything from outside, and where it went, N, from the start.
@@ -108,7 +109,7 @@ struct PathLedger {
     elastic = elastic_now;
     largest = std::max({largest, std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
   }
-  void pass(PathNumbers& n) { n.pass(work, elastic, friction, released, negligible, largest); }
+  void pass(PathNumbers& n) { EQUIDEM_PASS(n, work, elastic, friction, released, negligible, largest); }
   /// The sum that should vanish, N.
   [[nodiscard]] double missing() const { return work - elastic - friction - released; }
   /// missing() over the largest of its terms.

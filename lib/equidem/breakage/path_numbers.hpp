@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The state of a path as a list of numbers, bit for bit: one description of it saves and restores. The last number
-/// follows from the kinds of all others in turn: numbers of a state with other members are refused.
+/// follows from the names and kinds of all members in turn: numbers of a state with other members are refused.
 #pragma once
 
 #include <concepts>
@@ -16,6 +16,9 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/vector.hpp"
+
+/// Passes members with their names, which are saved beside their kinds.
+#define EQUIDEM_PASS(numbers, ...) (numbers).pass(#__VA_ARGS__, __VA_ARGS__)
 
 namespace equidem {
 
@@ -38,10 +41,11 @@ class PathNumbers {
     if (restores_ && (next_ + 1 != numbers_.size() || numbers_.back() != kinds())) refuse();
   }
 
-  /// Saves these, or restores them.
+  /// Saves these, or restores them; see EQUIDEM_PASS.
   template <typename... Values>
-  void pass(Values&... values) {
-    (one(values), ...);
+  void pass(const char* names, Values&... values) {
+    for (; *names != '\0'; ++names) mark(static_cast<unsigned char>(*names));
+    all(values...);
   }
 
  private:
@@ -55,6 +59,10 @@ class PathNumbers {
     return numbers_[next_++];
   }
 
+  template <typename... Values>
+  void all(Values&... values) {
+    (one(values), ...);
+  }
   template <typename T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void one(T& value) {
     mark(std::is_floating_point_v<T> ? 1 : std::is_enum_v<T> ? 2 : 3);
@@ -69,16 +77,16 @@ class PathNumbers {
   void one(long double& value) {
     auto high = static_cast<double>(value);
     auto low = static_cast<double>(value - static_cast<long double>(high));
-    pass(high, low);
+    all(high, low);
     if (restores_) value = high;
     if (restores_ && low != 0) value += low;  // the sum of -0 and 0 is 0
   }
   template <typename T>
   void one(DeformationOf<T>& d) {
-    pass(d.normal, d.tangential);
+    all(d.normal, d.tangential);
   }
-  void one(ContactForce& f) { pass(f.normal, f.tangential); }
-  void one(Tensor2& t) { pass(t.xx, t.xy, t.yx, t.yy); }
+  void one(ContactForce& f) { all(f.normal, f.tangential); }
+  void one(Tensor2& t) { all(t.xx, t.xy, t.yx, t.yy); }
   template <typename T>
   requires requires(T& value, PathNumbers& numbers) { value.pass(numbers); }
   void one(T& value) { value.pass(*this); }

@@ -72,7 +72,7 @@ class Standstill {
     still_ = true;
     return false;
   }
-  void pass(PathNumbers& n) { n.pass(kept_, steps_, until_, times_, still_); }
+  void pass(PathNumbers& n) { EQUIDEM_PASS(n, kept_, steps_, until_, times_, still_); }
 
  private:
   std::vector<ContactStatus> kept_;

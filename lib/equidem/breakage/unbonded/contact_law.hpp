@@ -49,7 +49,7 @@ struct ContactTangent {
   [[nodiscard]] ContactForce rate(const ContactDeformation& d) const {
     return {nn * d.normal, tn * d.normal + tt * d.tangential};
   }
-  void pass(PathNumbers& n) { n.pass(nn, tn, tt); }
+  void pass(PathNumbers& n) { EQUIDEM_PASS(n, nn, tn, tt); }
   friend bool operator==(const ContactTangent&, const ContactTangent&) = default;
 };
 

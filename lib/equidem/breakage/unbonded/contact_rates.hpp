@@ -34,7 +34,9 @@ struct Rates {
   double negligible = 0;   ///< rates of forces, and of gaps times kN, below are round-off
   bool balanced = false;   ///< false: loads drive a motion that nothing resists
 
-  void pass(PathNumbers& n) { n.pass(motion, deformation, lambda, force_scale, round_off, negligible, balanced); }
+  void pass(PathNumbers& n) {
+    EQUIDEM_PASS(n, motion, deformation, lambda, force_scale, round_off, negligible, balanced);
+  }
 };
 
 /// Where the work of loads on a motion is prescribed, and not the loads.

@@ -76,7 +76,7 @@ void TangentSolver::pass(PathNumbers& n) {
   std::int64_t factorizations = factorizations_, updates = updates_;
   std::vector<std::size_t> solved;
   for (const auto& [contact, columns] : columns_) solved.push_back(contact);
-  n.pass(base, now, solved, factorizations, updates);
+  EQUIDEM_PASS(n, base, now, solved, factorizations, updates);
   if (!n.restores()) return;
   if (!base.empty() && base_ != base) {
     now_ = base;

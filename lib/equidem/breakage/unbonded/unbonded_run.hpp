@@ -60,8 +60,8 @@ class UnbondedRun final : public EventPath {
   /// Everything between two calls of advance() that the scene does not say: a path that is restored goes on with the
   /// same bits.
   void pass(PathNumbers& n) {
-    n.pass(events_, points_, breaking_, rates_, dead_done_, standstill_, steps_, leg_, load_rate_);
-    n.pass(motion_rate_, share_, travelled_, end_, why_, largest_residual_, state_, solver_);
+    EQUIDEM_PASS(n, events_, points_, breaking_, rates_, dead_done_, standstill_, steps_, leg_, load_rate_);
+    EQUIDEM_PASS(n, motion_rate_, share_, travelled_, end_, why_, largest_residual_, state_, solver_);
     if (n.restores() && end_ == PathEnd::most_events) end(PathEnd::none, {});  // this path may have more
   }
 

@@ -41,9 +41,9 @@ class UnbondedState {
   void end_release();
   /// All that the constructor does not find.
   void pass(PathNumbers& n) {
-    n.pass(status_, slip_, motion_.high, motion_.low, lambda_, dead_, releasing_, kept_, share_, kept_share_);
-    n.pass(released_by_, deformation_, forces_, carried_, internal_, ledger_, residual_, force_scale_,
-           round_off_force_);
+    EQUIDEM_PASS(n, status_, slip_, motion_.high, motion_.low, lambda_, dead_, releasing_, kept_, share_, kept_share_);
+    EQUIDEM_PASS(n, released_by_, deformation_, forces_, carried_, internal_, ledger_, residual_, force_scale_,
+                 round_off_force_);
   }
 
   [[nodiscard]] const std::vector<ContactStatus>& status() const { return status_; }
