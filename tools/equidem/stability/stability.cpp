@@ -350,7 +350,7 @@ Results stability_results(const Problem& problem, const Stability& s) {
   Results out = problem_results(problem, s.effects, AssemblyKeys::size);
   if (problem.resolved.ensemble)
     out.line("not used", "[ensemble]: the one assembly of [assembly] is judged, with its seed");
-  if (periodic && !s.critical_load && s.reached >= StabilityStage::waves) add_waves(out, s);
+  if (periodic && s.reached >= StabilityStage::waves) add_waves(out, s);
   add_mechanisms(out, s, periodic);
   add_inertia(out, s);
   if (s.critical_load) add_critical_load(out, *s.critical_load, problem.assembly);
