@@ -14,10 +14,11 @@ import re
 import shutil
 import sys
 
+import gallery
 import generate
 
 # Pages made here, by their place in docs/, which pages may link to.
-GENERATED = ["reference/verbs.md", "reference/result.md", "examples/index.md"]
+GENERATED = ["cases.md", "reference/verbs.md", "reference/result.md", "examples/index.md"]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 TO_FOLDER = re.compile(r"\[`?([^\[\]`]*)`?\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r"^(```\{include\} )(\S+)$")
@@ -147,6 +148,7 @@ def main():
             stage.write(target, stage.text(name, target))
     examples = sorted(script.stem for script in (source / "docs/examples").glob("*.py"))
     stage.write("examples/index.md", generate.examples_page(examples))
+    stage.write("cases.md", gallery.page(source, place, program))
     stage.write("reference/verbs.md", generate.verbs_page(program))
     stage.write("reference/result.md", generate.result_page(program))
 
