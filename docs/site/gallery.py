@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """gallery.py SOURCE STAGE PROGRAM: a page of all cases of data/cases, each with a picture that the program makes of it.
 
-A case is run by the first command of its comment. What takes longer than EQUIDEM_GALLERY_SECONDS (30) is interrupted, and its picture is that
-of what was done until then.
+A case is run by the first command of its comment. What takes longer than EQUIDEM_GALLERY_SECONDS (30) is interrupted,
+and its picture is that of what was done until then.
 """
 
 import concurrent.futures
@@ -18,30 +18,31 @@ import tempfile
 
 # Groups of the page: heading, begin of the names of their cases.
 GROUPS = [("Equilibrium", ("abe1996", "cantilever", "delaunay", "restrained", "truss")),
-          ("Moduli, springs, stability", ("random_cell", "free_sample", "ensemble", "viscoelastic", "hexagonal", "column", "calibrate")),
+          ("Moduli, springs, stability",
+           ("random_cell", "lab_rock", "free_sample", "ensemble", "viscoelastic", "hexagonal", "column",
+            "calibrate")),
           ("Packings", ("pack",)), ("Breakage", ("notched", "frictional")), ("Bonded discs in motion", ("run",)),
           ("Bodies that collide", ("grains",)), ("From a sieve curve to a wave", ("sandstone",)), ("Others", ("",))]
 # What shows a case best, in this order.
-PICTURES = ("picture_buckling.png", "picture*.png", "cracks*.png", "breaks_plot.png", "fields.png", "dispersion*.png", "*.png")
+PICTURES = ("picture_buckling.png", "cracks.png", "picture*.png", "breaks_plot.png", "dispersion*.png", "*.png")
 WIDTH = 480  # of a thumbnail, in pixels
 
 
 def told(case):
     """Title, what the comment says of the case, and its first command."""
     text = case.read_text(encoding="utf-8")
-    lines = [line[1:].strip() if not line.startswith("#   ") else "$" + line[4:] for line in text.split("\n\n", 1)[0].split("\n") if line.startswith("#")]
     said, command = [], ""
-    for line in lines:
-        if line.startswith("$equidem"):
-            command = command or line[1:].split("   ")[0]
-        elif not command and not line.startswith("$"):
-            said.append(line)
+    for line in text.split("\n\n", 1)[0].split("\n"):
+        if line.startswith("#   equidem") and "'" not in line:
+            command = command or line[4:].split("   ")[0]
+        elif line.startswith("#") and not line.startswith("#  ") and not command:
+            said.append(line[1:].strip())
     title = re.search(r'^title *= "(.*)"', text, re.M)
     return (title.group(1) if title else case.stem), " ".join(said).strip(), command
 
 
 def command_of(case, command):
-    """Words of the command that makes the picture: without its folder; of a case without a command that of its tables."""
+    """Words of the command that makes the picture, without its folder; a case without one is homogenized or scanned."""
     text = case.read_text(encoding="utf-8")
     words = command.split()[1:] if command else []
     if not words or words[0] == "sweep":
@@ -57,8 +58,8 @@ def picture(program, case, target, seconds):
     """Write the picture of a case; returns whether there is one."""
     with tempfile.TemporaryDirectory() as name:
         words = command_of(case, told(case)[2])
-        running = subprocess.Popen([program, *words, "--quiet", "--threads", "1", "--out", name, "--overwrite"], cwd=case.parent,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        running = subprocess.Popen([program, *words, "--quiet", "--threads", "1", "--out", name, "--overwrite"],
+                                   cwd=case.parent, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
             _, error = running.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
@@ -107,8 +108,10 @@ def page(source, stage, program):
     folder, copies = stage / "files/cases", stage / "files/data/cases"
     folder.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        jobs = {case: pool.submit(picture, program, case, folder / f"{case.stem}.png", seconds) for _, cases in groups for case in cases}
-    lines = ["# Cases as pictures", "", "Every case of `data/cases`, drawn by the program. Click a picture for the case file; its comment has more commands.", ""]
+        jobs = {case: pool.submit(picture, program, case, folder / f"{case.stem}.png", seconds)
+                for _, cases in groups for case in cases}
+    lines = ["# Cases as pictures", "", "Every case of `data/cases`, drawn by the program. A picture leads to its case "
+             "file, whose comment has more commands.", ""]
     for heading, cases in groups:
         lines += [f"## {heading}", "", "| | |", "|---|---|"]
         for case in cases:
@@ -116,9 +119,10 @@ def page(source, stage, program):
             place = case.relative_to(source / "data/cases")
             (copies / place).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(case, copies / place)
-            shown = f"![{title.replace('|', ' ')}](files/cases/{case.stem}.png)" if jobs[case].result() else title
+            shown = f"![{title}](files/cases/{case.stem}.png)" if jobs[case].result() else title
             words = " ".join(["equidem", *command_of(case, command)])
-            lines.append(f"| [{shown}](files/data/cases/{place}) | **{first_sentences(title)}**<br>{first_sentences(said)}<br>`{words}` |")
+            text = f"**{first_sentences(title)}**<br>{first_sentences(said)}<br>`{words}`"
+            lines.append(f"| [{shown}](files/data/cases/{place}) | {text} |")
         lines.append("")
     return "\n".join(lines)
 

@@ -37,7 +37,8 @@ def write_rows(path, head, rows):
 
 def table(head, rows):
     lines = [head, ["---"] * len(head), *rows]
-    return "".join("| " + " | ".join(line) + " |\n" for line in lines).replace("| --- ", "|---").replace("--- |", "---|")
+    text = "".join("| " + " | ".join(line) + " |\n" for line in lines)
+    return text.replace("| --- ", "|---").replace("--- |", "---|")
 
 
 def shown(page, name, where, columns):
@@ -47,8 +48,8 @@ def shown(page, name, where, columns):
         raise Wrong(f"{page.relative_to(SOURCE)}: there is no file {name}")
     rows = rows_of(path)
     head = list(rows[0]) if rows else []
-    wanted = [(word.partition(" as ")[0].strip(), word.rpartition(" as ")[2].strip()) for word in columns.split(";")] if columns else [
-        (name, name) for name in head]
+    words = columns.split(";") if columns else head
+    wanted = [(word.partition(" as ")[0].strip(), word.rpartition(" as ")[2].strip()) for word in words]
     conditions = [[part.strip() for part in word.split("=")] for word in where.split(" and ")] if where else []
     for column in [column for column, _ in wanted] + [condition[0] for condition in conditions]:
         if column not in head:
