@@ -49,9 +49,9 @@ class Pages(ProgramTest):
 
     def test_the_block_of_accuracy_has_the_motions_of_elimination(self):
         run = self.run_of()
-        command = accuracy.BLOCK.format(rows=21, method="{}")
-        exact, _ = accuracy.motions(run, command.format("multifrontal"))
-        close, seconds = accuracy.motions(run, command.format("multigrid") + " --accuracy 1e-2")
+        command = f"{accuracy.BLOCK} --set assembly.rows=21 --set assembly.columns=21 --set solver.method="
+        exact, _ = accuracy.motions(run, command + "multifrontal")
+        close, seconds = accuracy.motions(run, command + "multigrid --accuracy 1e-2")
         self.assertGreater(seconds, 0)
         self.assertLess(max(abs(a - b) for a, b in zip(exact, close)), 1e-2 * max(map(abs, exact)))
 

@@ -31,8 +31,9 @@ def spread_out(places, gap):
     return found
 
 
-def curves(path, series, xlabel, ylabel, floor=0.0):
-    """Logarithmic curves with their names at their ends. series: name -> points (x, y); values below the floor are drawn on it."""
+def curves(path, series, xlabel, ylabel, floor=0.0, above=False):
+    """Logarithmic curves with their names at their lower ends, or slanted above their upper ones. series: name -> points (x, y); values below
+    the floor are drawn on it."""
     figure, axes = plt.subplots(figsize=(4.8, 3.4), layout="constrained")
     axes.set(xscale="log", yscale="log", xlabel=xlabel, ylabel=ylabel)
     axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
@@ -41,8 +42,15 @@ def curves(path, series, xlabel, ylabel, floor=0.0):
         points = [(x, max(y, floor)) for x, y in sorted(points)]
         colour = COLOURS[k % len(COLOURS)]
         axes.plot(*zip(*points), color=colour, marker=MARKERS[k % len(MARKERS)], markersize=4, linewidth=1.2)
-        ends.append((name, colour, points[-1]))
+        ends.append((name, colour, max(points, key=lambda point: point[1]) if above else min(reversed(points), key=lambda point: point[1])))
     axes.margins(x=0.08, y=0.08)
+    if above:
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high * (high / low) ** 0.3)
+        for name, colour, end in ends:
+            axes.annotate(name, end, xytext=(3, 5), textcoords="offset points", color=colour, rotation=40, va="bottom")
+        save(figure, path)
+        return
     low, high = axes.get_xlim()
     room = 0.075 * max(len(name) for name in series)  # inches of the widest name
     axes.set_xlim(low, high * (high / low) ** (room / (4.0 - room)))
