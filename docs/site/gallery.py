@@ -25,7 +25,7 @@ GROUPS = [("Equilibrium", ("abe1996", "cantilever", "delaunay", "restrained", "t
           ("Bodies that collide", ("grains",)), ("From a sieve curve to a wave", ("sandstone",)), ("Others", ("",))]
 # What shows a case best, in this order.
 PICTURES = ("picture_buckling.png", "cracks.png", "picture*.png", "breaks_plot.png", "dispersion*.png", "*.png")
-WIDTH = 480  # of a thumbnail, in pixels
+WIDTH = 420  # of a thumbnail, in pixels
 
 
 def told(case):
@@ -55,26 +55,30 @@ def command_of(case, command):
 
 
 def picture(program, case, target, seconds):
-    """Write the picture of a case; returns whether there is one."""
+    """Write the picture of a case, or of its assembly; returns whether there is one."""
+    words = command_of(case, told(case)[2])
+    ways = (words, ["homogenize", case.name])
+    return any(drawn(program, way, case, target, seconds) for way in ways)
+
+
+def drawn(program, words, case, target, seconds):
     with tempfile.TemporaryDirectory() as name:
-        words = command_of(case, told(case)[2])
         running = subprocess.Popen([program, *words, "--quiet", "--threads", "1", "--out", name, "--overwrite"],
-                                   cwd=case.parent, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                                   cwd=case.parent, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
-            _, error = running.communicate(timeout=seconds)
+            running.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
             running.send_signal(signal.SIGINT)
-            _, error = running.communicate(timeout=120)
+            running.communicate(timeout=120)
         found = next((path for pattern in PICTURES for path in sorted(pathlib.Path(name).glob(pattern))), None)
         if found is None:
-            print(f"gallery: {case.name} has no picture: {error.strip()}", file=sys.stderr)
             return False
         try:
             from PIL import Image
             with Image.open(found) as image:
                 image = image.convert("RGB")
                 image.thumbnail((WIDTH, WIDTH))
-                image.save(target, optimize=True)
+                image.quantize(128).save(target, optimize=True)
         except ImportError:
             shutil.copyfile(found, target)
         return True

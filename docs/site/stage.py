@@ -31,7 +31,7 @@ def pages_of(source):
     for path in sorted([*(source / "docs").rglob("*.md"), *(source / "docs").rglob("*.rst")]):
         name = path.relative_to(source).as_posix()
         pages[name] = name[len("docs/"):]
-    for pattern in ("data/*.md", "data/benchmarks/*.md", "data/papers/*.md"):
+    for pattern in ("data/*.md", "data/benchmarks/*.md", "data/papers/*.md", "data/*/report.md"):
         for path in sorted(source.glob(pattern)):
             name = path.relative_to(source).as_posix()
             pages[name] = name
@@ -119,7 +119,7 @@ class Stage:
         if name.endswith(".rst"):
             return LITERAL.sub(lambda found: found.group(1) + self.near(found.group(2), name, place),
                                (self.source / name).read_text(encoding="utf-8"))
-        lines = []
+        lines = ["---", "orphan: true", "---", ""] if name.endswith("/report.md") else []
         for line, is_text in outside_code((self.source / name).read_text(encoding="utf-8")):
             if is_text:
                 line = self.without_folders(line, name)

@@ -41,6 +41,14 @@ def table(head, rows):
     return text.replace("| --- ", "|---").replace("--- |", "---|")
 
 
+def unbroken(cell):
+    """A cell in which no line breaks within a number or between it and its unit."""
+    if "`" in cell:
+        return cell
+    cell = re.sub(r"(?<=\de)-(?=\d)", "\u2011", cell)
+    return re.sub(r"(?<=\d) (?=(?:[µm]?s|[MG]B|%|\d{3})(?![\w]))", "\u00a0", cell)
+
+
 def shown(page, name, where, columns):
     """The Markdown of a block."""
     path = page.parent / name
@@ -55,7 +63,7 @@ def shown(page, name, where, columns):
         if column not in head:
             raise Wrong(f"{page.relative_to(SOURCE)}: {name} has no column '{column}'; it has {', '.join(head)}")
     kept = [row for row in rows if all(row[column] == value for column, value in conditions)]
-    return table([label for _, label in wanted], [[row[column] for column, _ in wanted] for row in kept])
+    return table([label for _, label in wanted], [[unbroken(row[column]) for column, _ in wanted] for row in kept])
 
 
 def filled(page):
