@@ -43,7 +43,7 @@ class Pages(ProgramTest):
     def test_points_of_a_study_have_the_errors_of_all_its_methods(self):
         points, ways = accuracy.of_studies(self.run_of(), "integrators")
         self.assertEqual({point[1] for point in points}, {"leapfrog", "velocity_verlet", "fourth_order", "thesis"})
-        self.assertIn("`equidem study data/studies/integrators.toml --accuracy 1e-2`", [way[-1] for way in ways])
+        self.assertIn("`equidem study data/studies/integrators.toml --accuracy 1e-8`", [way[-1] for way in ways])
         for point in points:
             self.assertGreater(float(point[4]), 0)
 

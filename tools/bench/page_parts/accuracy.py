@@ -109,7 +109,7 @@ def statics(run):
             points.append([f"solvers_{rows}", method, way, f"{found[-1][2]:.4g}", f"{error:.3g}", stamp()["commit"]])
         discs = f"{len(truth) // 2:,}".replace(",", " ")
         ways += [[STATICS.format(discs=discs), asked, seconds(taken), f"{error:.1e}", way, f"`equidem {command}`"]
-                 for asked, (way, error, taken, command) in cheapest(found)]
+                 for asked, (way, error, taken, command) in cheapest(found[::-1])]
     return points, ways
 
 
