@@ -57,6 +57,14 @@ def wrong_formats():
         yield "docs/how_to/engines.md: the table is not that of 'equidem help engines'"
 
 
+def missing_rooms():
+    """docs/reference/cpp.rst has a heading for every folder of the library."""
+    rooms = re.findall(r"^  (\w+) +# ", page("lib/CMakeLists.txt"), re.M)
+    headings = re.findall(r"^([\w, ]+)\n-+$", page("docs/reference/cpp.rst"), re.M)
+    known = {name.strip() for heading in headings for name in heading.split(",")}
+    yield from (f"docs/reference/cpp.rst: the folder {room} is missing" for room in rooms if room not in known)
+
+
 def unknown_files():
     """docs/file_formats.md, or the page of export, names every file whose name the verbs and the writers have."""
     known = page("docs/file_formats.md") + page("docs/how_to/engines.md")
@@ -89,6 +97,13 @@ def wrong_numbers():
     (settled,) = (row for row in tables.rows_of(SOURCE / "data/benchmarks/steps.csv") if row["discs"] == "settled" and row["cores"] == "1")
     if settled["faster than LAMMPS by"] not in readme:
         yield f"README.md: settled discs step {settled['faster than LAMMPS by']} times as fast as LAMMPS"
+    speed = page("docs/reference/speed.md")
+    steps = {(row["loop"], row["threads"]): row["disc-steps/s"].split()[0] for row in
+             tables.rows_of(SOURCE / "data/benchmarks/dynamic/beside_plain_loops.csv") if row["assembly"] == "hexagonal" and row["discs"] == "1000500"}
+    for loop, threads in (("equidem", "1"), ("equidem", "2"), ("plain, over pairs", "1")):
+        number = f"{float(steps[loop, threads]):.2g}".replace("e+0", "e")
+        if number not in speed:
+            yield f"docs/reference/speed.md: {number} steps of a disc per second ({loop}, {threads} threads) is missing"
     yield from tables.stale()
 
 
@@ -104,6 +119,6 @@ def long_pages():
             yield f"{name}: {len(lines) - 1} lines; 150 at most"
 
 
-wrong = [*wrong_verbs(), *wrong_formats(), *unknown_files(), *wrong_index(), *wrong_numbers(), *long_pages()]
+wrong = [*wrong_verbs(), *wrong_formats(), *missing_rooms(), *unknown_files(), *wrong_index(), *wrong_numbers(), *long_pages()]
 print("\n".join(wrong) or "lists and numbers of the pages agree")
 sys.exit(1 if wrong else 0)
