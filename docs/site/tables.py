@@ -70,7 +70,7 @@ def filled(page):
     """The text of a page with its tables as their files have them."""
     def block(found):
         first = found.group(0).partition("\n")[0]
-        return f"{first}\n\n{shown(page, *found.groups()[:3])}\n<!-- end -->"
+        return f"{first}\n{shown(page, *found.groups()[:3])}\n<!-- end -->"
     return BLOCK.sub(block, page.read_text(encoding="utf-8"))
 
 
