@@ -84,6 +84,18 @@ def bars(path, groups, xlabel, by_name=False):
     save(figure, path)
 
 
+def dots(path, values, xlabel):
+    """A dot for each (name, value) beside the line at 1."""
+    figure, axes = plt.subplots(figsize=(4.8, 0.5 + 0.24 * len(values)), layout="constrained")
+    axes.axvline(1, color="black", linewidth=0.8)
+    axes.plot([value for _, value in values], range(len(values)), "o", color=COLOURS[0], markersize=5)
+    axes.set_yticks(range(len(values)), [name for name, _ in values], fontsize=8)
+    axes.grid(True, axis="x", color="#dddddd", linewidth=0.6)
+    axes.tick_params(axis="y", length=0)
+    axes.set(ylim=(len(values) - 0.4, -0.6), xlabel=xlabel)
+    save(figure, path)
+
+
 def bound_and_error(path, groups, xlabel, ylabel):
     """Points (x, y) of groups beside the line on which both are equal."""
     figure, axes = plt.subplots(figsize=(4.8, 3.8), layout="constrained")
