@@ -69,7 +69,11 @@ def drawn(program, words, case, target, seconds):
             running.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
             running.send_signal(signal.SIGINT)
-            running.communicate(timeout=120)
+            try:
+                running.communicate(timeout=60)
+            except subprocess.TimeoutExpired:
+                running.kill()
+                running.communicate()
         found = next((path for pattern in PICTURES for path in sorted(pathlib.Path(name).glob(pattern))), None)
         if found is None:
             return False
