@@ -14,10 +14,11 @@ import re
 import shutil
 import sys
 
+import gallery
 import generate
 
 # Pages made here, by their place in docs/, which pages may link to.
-GENERATED = ["reference/verbs.md", "reference/result.md", "examples/index.md"]
+GENERATED = ["cases.md", "reference/verbs.md", "reference/result.md", "examples/index.md"]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 TO_FOLDER = re.compile(r"\[`?([^\[\]`]*)`?\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r"^(```\{include\} )(\S+)$")
@@ -30,7 +31,7 @@ def pages_of(source):
     for path in sorted([*(source / "docs").rglob("*.md"), *(source / "docs").rglob("*.rst")]):
         name = path.relative_to(source).as_posix()
         pages[name] = name[len("docs/"):]
-    for pattern in ("data/*.md", "data/benchmarks/*.md", "data/papers/*.md"):
+    for pattern in ("data/*.md", "data/benchmarks/*.md", "data/papers/*.md", "data/*/report.md"):
         for path in sorted(source.glob(pattern)):
             name = path.relative_to(source).as_posix()
             pages[name] = name
@@ -118,7 +119,7 @@ class Stage:
         if name.endswith(".rst"):
             return LITERAL.sub(lambda found: found.group(1) + self.near(found.group(2), name, place),
                                (self.source / name).read_text(encoding="utf-8"))
-        lines = []
+        lines = ["---", "orphan: true", "---", ""] if name.endswith("/report.md") else []
         for line, is_text in outside_code((self.source / name).read_text(encoding="utf-8")):
             if is_text:
                 line = self.without_folders(line, name)
@@ -147,6 +148,7 @@ def main():
             stage.write(target, stage.text(name, target))
     examples = sorted(script.stem for script in (source / "docs/examples").glob("*.py"))
     stage.write("examples/index.md", generate.examples_page(examples))
+    stage.write("cases.md", gallery.page(source, place, program))
     stage.write("reference/verbs.md", generate.verbs_page(program))
     stage.write("reference/result.md", generate.result_page(program))
 

@@ -12,5 +12,5 @@ if ! command -v doxygen >/dev/null; then
   echo "skipped: doxygen is not installed; tools/docs installs it"
   exit 0
 fi
-"$1/docs/site/build" "$2" "$2/docs/site"
+EQUIDEM_GALLERY_SECONDS=2 "$1/docs/site/build" "$2" "$2/docs/site"
 /usr/bin/python3 -B "$1/tests/docs/check_site.py" "$2/docs/site"

@@ -3,10 +3,11 @@
 """Exported models in the engines that they are for.
 
     run_checks.py PROGRAM GROUP               the checks of a group; exit code 77 where the engine is not installed
-    run_checks.py PROGRAM --page FILE         all checks, as the tables of a page
+    run_checks.py PROGRAM --csv FILE          all checks, as the table of the page data/interop.md
 
 Variables: EQUIDEM_LAMMPS, EQUIDEM_LAMMPS_BPM, EQUIDEM_YADE name the programs, else lmp and yade.
 """
+import csv
 import pathlib
 import sys
 import tempfile
@@ -86,9 +87,11 @@ def measure(program, group=None):
 
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
-    if sys.argv[2] == "--page":
-        import page
-        pathlib.Path(sys.argv[3]).write_text(page.text_of(list(measure(program))))
+    if sys.argv[2] == "--csv":
+        with open(sys.argv[3], "w", newline="", encoding="utf-8") as file:
+            rows = csv.writer(file, lineterminator="\n")
+            rows.writerow(["engine", "compared", "difference", "limit of the test"])
+            rows.writerows([check[1], check[2], f"{value:.1e}", f"{check[3]:.0e}"] for check, value in measure(program))
         return 0
     try:
         bad = [check[2] for check, value in measure(program, sys.argv[2]) if not value <= check[3]]

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The table of hard cases: each is right to a stated accuracy, or refused with a sentence that says what to do. What a
-/// test promises and measures becomes a row of data/hard_cases.md (make_table.py).
+/// test promises and measures becomes a row of data/hard_cases/tasks.csv (make_table.py).
 #pragma once
 
 #include <cstdint>

@@ -1,40 +1,50 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of hard cases, as the tests measure it.
+"""The hard cases, as the tests measure them: tables and figure of data/hard_cases, which the page data/hard_cases.md shows.
 
-    make_table.py write PROGRAM [DEBUG] PAGE   run the test program, on one thread and on two, and the same tests of a debug build,
-                                               where one is given; large cases once, on two threads; and write the page
-    make_table.py check PAGE                   does the page name the cases of the tests beside this script, and no others?
+    make_table.py write PROGRAM [DEBUG] FOLDER   run the test program, on one thread and on two, and the same tests of a debug build,
+                                                 where one is given; large cases once, on two threads; and write the tables
+    make_table.py summarize FOLDER               make the summaries and the figure of stored tasks again
+    make_table.py check FOLDER                   do the tables have the cases of the tests beside this script, and no others?
 """
 
-import glob
 import json
 import math
 import os
+import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
-HEAD = """# Hard cases
-
-Each is right to a stated accuracy, or refused with a sentence that says what to do. Written by the tests:
-
-    tests/hard_cases/make_table.py write build/release/tests/test_hard_cases [build/debug/tests/test_hard_cases] data/hard_cases.md
-
-"""
-READING = """*error* is the distance from the truth: quadruple precision, a closed form, or a solution known beforehand; of multigrid the distance
-from elimination, and the bound is that of both. *bound* is what the program itself states, from the residual, an estimate of the
-condition and the rounding of the geometry. Both are relative: of all motions (2-norm, rotations times the mean radius), or of the largest entry of the effective stiffness. *energy* is the error of
-the ledger of energies, *heat* what a body at rest dissipates, of the elastic energy, *balance* the force that a body lacks to be
-at rest, over the largest contact force. *< floor* is a value below the round-off of the quantity that it is a share of, 1.1e-16
-(2^-53). Digits differ a little from machine to machine; that the error is within the bound, and the bound within what is
-promised, is tested on each.
-
-"""
 FLOOR = 2.0**-53
-STATICS = ("solve", "homogenize", "stability", "quasistatic")  # first words of tasks
-ATTACKS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "data", "hard_cases")
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(SOURCE / "docs" / "site"), str(SOURCE / "tools" / "bench" / "page_parts")]
+sys.dont_write_bytecode = True
+
+import tables  # noqa: E402
+
+# Kind: sources of its cases, what is hard, what the program does.
+KINDS = {
+    "free motions": (["networks", "dilution"], "gears, chains, rattlers, networks near the onset of rigidity",
+                     "finds zero-energy modes, fixes them where no load acts on them, else names the part and the support that it needs"),
+    "ill-conditioned matrices": (["slender", "springs"], "strips of 2 x 1e5 discs, kT/kN from 1e-8 to 1e8 and near the critical one, joints 1e-10 as stiff",
+                                 "refines the solution in extended precision, bounds its error by the condition, refuses where no digit is certain"),
+    "sizes and units": (["scales", "small_cells", "large"], "radii in ratio 1000:1, from 1e-9 to 1e6 m, far from the origin; cells of one disc; a million discs",
+                        "decides nothing by an absolute number"),
+    "multigrid": (["iterations"], "slender strips, springs ten decades apart, floppy networks",
+                  "measures the residual by the contact law; elimination follows where iterations do not converge"),
+    "bonds that break, contacts that slip": (["breakage", "friction"], "equal and zero strengths, loads to and fro, friction 0 to 10",
+                                             "takes events at one load in a fixed order, closes the balance of energies, ends with a reason"),
+    "impacts": (["collisions"], "Newton's cradle, masses in ratio 1e6, restitution 0 and 1, steps as long as a contact",
+                "keeps the energy of a contact, refuses a step that lets bodies pass through one another"),
+    "bodies at rest": (["collisions_at_rest"], "columns, heaps, wedges", "keeps at rest what rests: no creep by the step"),
+    "shapes": (["grain_shapes"], "needles of aspect 20, aligned and concentric bodies, radii 1:100", "finds the closest points from any start"),
+    "boxes and bonds": (["grain_boxes"], "closing gaps, overfilled boxes, 100 g, all bonds broken at once",
+                        "limits the step by the stiffest contact and bond"),
+    "few bodies, large friction": (["grains_alone", "unstable_motion"], "one grain, no gravity, friction 10", "counts what leaves the box"),
+}
+STORED = ["kind", "case", "why it is hard", "task", "promised", "measured"]
 
 
 def runs_of(programs):
@@ -43,31 +53,24 @@ def runs_of(programs):
     return [(build, threads, program) for build, program in builds for threads in (1, 2)]
 
 
-def said_of(runs):
-    builds = ("an optimized build on one thread and on two: one value where both" if len(runs) == 2 else
-              "an optimized and a debug build, each on one thread and on two: one value where all four")
-    return (f"Measured by {builds} print the same,\nelse each. Thin strips of 1e4 discs and more, assemblies of a million and "
-            "runs of a million steps are measured once, by the\noptimized build on two threads.\n")
-
-
 def cases_of_sources():
-    """Names of the cases in the order in which the sources have them first."""
-    names = []
-    for path in sorted(glob.glob(os.path.join(os.path.dirname(os.path.abspath(__file__)), "*.cpp"))):
-        with open(path, encoding="utf-8") as file:
-            names += re.findall(r'HardCase(?:::Words)? \w+\(?\s*\{\s*\.name = "([^"]+)"', file.read())
-    return list(dict.fromkeys(names))
+    """Kind of each case, in the order in which the sources have them first."""
+    kinds = {source: kind for kind, (sources, _, _) in KINDS.items() for source in sources}
+    found = {}
+    for path in sorted(pathlib.Path(__file__).parent.glob("*.cpp")):
+        for name in re.findall(r'HardCase(?:::Words)? \w+\(?\s*\{\s*\.name = "([^"]+)"', path.read_text(encoding="utf-8")):
+            found.setdefault(name, kinds.get(path.stem, "of no kind"))
+    return found
 
 
 def rows_of(run):
     build, threads, program = run
     with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "rows")
-        environment = {**os.environ, "EQUIDEM_HARD_CASES": path, "EQUIDEM_HARD_CASES_THREADS": str(threads)}
+        path = pathlib.Path(folder) / "rows"
+        environment = {**os.environ, "EQUIDEM_HARD_CASES": str(path), "EQUIDEM_HARD_CASES_THREADS": str(threads)}
         for tests in [[]] + [["[.large]"]] * (build == "optimized" and threads == 2):
             subprocess.run([program, *tests], env=environment, check=True, stdout=sys.stderr)
-        with open(path, encoding="utf-8") as file:
-            return [json.loads(line) for line in file]
+        return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
 def labels_of(runs):
@@ -86,7 +89,7 @@ def merged(measured):
         by_value.setdefault(value, []).append(run)
     if len(by_value) == 1:
         return next(iter(by_value))
-    return "<br>".join(f"{value} ({labels_of(runs)})" for value, runs in by_value.items())
+    return "; ".join(f"{value} ({labels_of(runs)})" for value, runs in by_value.items())
 
 
 def floored(task, promised, measured):
@@ -94,11 +97,6 @@ def floored(task, promised, measured):
     if promised == "refused":
         return measured
     return re.sub(r"[+-]?\b\d\.\d+e-\d+\b", lambda found: "< floor" if abs(float(found[0])) < FLOOR else found[0], measured)
-
-
-def anchor_of(title):
-    """The name that GitHub gives a heading."""
-    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
 def orders_of(task, measured):
@@ -112,71 +110,67 @@ def orders_of(task, measured):
     return [math.log2(values[k] / values[k + 1]) for k in (0, 1)]
 
 
-def shortfalls_of(table):
+def numbers_of(measured):
+    """Error and bound of a task that has both; below the floor: the floor."""
+    found = re.match(r"error (< floor|\S+), bound (< floor|[^\s,;]+)", measured)
+    return tuple(FLOOR if text == "< floor" else float(text) for text in found.groups()) if found else None
+
+
+def kinds_table(rows):
+    """Tasks of each kind: right, refused, not promised, wrong."""
+    counted = []
+    for kind, (_, hard, done) in KINDS.items():
+        own = [row for row in rows if row["kind"] == kind]
+        refused = sum(row["promised"] == "refused" for row in own)
+        free = sum(row["promised"].startswith("none") for row in own)
+        pairs = [numbers for row in own if (numbers := numbers_of(row["measured"]))]
+        wrong = sum(error > bound for error, bound in pairs)
+        counted.append([kind, hard, done, len(own) - refused - free - wrong, refused, free, wrong])
+    totals = [sum(row[k] for row in counted) for k in range(3, 7)]
+    return [[*row[:3], *map(str, row[3:])] for row in [*counted, ["all", f"{len({row['case'] for row in rows})} cases", "", *totals]]]
+
+
+def shortfalls_of(rows):
     """Tasks that do not reach second order, and those of which nothing is promised."""
     lines = []
-    for case, tasks in table.items():
-        for (task, promised, _), cells in tasks.items():
-            orders = orders_of(task, cells[0][1])
-            link = f"[{case}](#{anchor_of(case)})"
-            if orders and min(orders) < 1.8:
-                lines.append(f"| {link} | {task} | orders {orders[0]:.1f}, {orders[1]:.1f} |")
-            if promised.startswith("none"):
-                lines.append(f"| {link} | {task} | not promised ({promised.partition(': ')[2]}): {cells[0][1]} |")
-    return ("## Orders that are not reached, and what is not promised\n\nA smooth motion has order 2. Where contacts begin and end "
-            "within a step, several at a time, errors at three steps that halve\nfall irregularly.\n\n| case | task | found "
-            "|\n|---|---|---|\n" + "\n".join(lines) + "\n\n")
+    for row in rows:
+        orders = orders_of(row["task"], row["measured"])
+        if orders and min(orders) < 1.8:
+            lines.append([row["case"], row["task"], f"orders {orders[0]:.1f}, {orders[1]:.1f}"])
+        if row["promised"].startswith("none"):
+            lines.append([row["case"], row["task"], f"not promised ({row['promised'].partition(': ')[2]}): {row['measured']}"])
+    return lines
 
 
-def attacks():
-    """Paragraphs with the numbers that the tests of fuzzing and of kills wrote."""
-    text = "## Attacks\n\n"
-    with open(os.path.join(ATTACKS, "fuzzing.json"), encoding="utf-8") as file:
-        fuzzing = json.load(file)
-    readers = fuzzing["readers"]
-    accepted = sum(count["accepted"] for count in readers.values())
-    text += (f"**Nearly valid inputs.** {fuzzing['inputs']:,} files, valid ones changed at random, were given to {len(readers)} "
-             f"readers\n({', '.join(readers)}).\nSanitizers: {fuzzing['sanitizers']}. {accepted:,} were accepted, and cases among them "
-             "read back to the same text; the others were refused by one\nline. Crashes, hangs (more than a second), defects: "
-             f"{fuzzing['findings'] or 'none'}. The slowest took {fuzzing['slowest_ms']} ms. Command:\n`{fuzzing['command']} --report "
-             "data/hard_cases/fuzzing.json`\n\n")
-    with open(os.path.join(ATTACKS, "kills.json"), encoding="utf-8") as file:
-        kills = json.load(file)
-    text += (f"**Kills.** {sum(kills['kills'].values())} programs were ended by SIGKILL or SIGTERM at random times and given the same "
-             "command again, with\n`--resume` where the verb has it: "
-             f"{'; '.join(f'{name}: {count}' for name, count in kills['kills'].items())}.\nAll files equal those of a program that was "
-             "never ended, to the byte (of `result.json`, what does not depend on the clock or\nthe folder; of a "
-             "checkpoint, all but counters of work; of a study, the errors); "
-             "so do those of one thread and of two. Differences: "
-             f"{len(kills['findings']) or 'none'}. Command:\n`{kills['command']} --report data/hard_cases/kills.json`\n\n")
-    return text
+def attacks_of(folder):
+    """What the tests of fuzzing and of kills wrote."""
+    fuzzing, kills = (json.loads((folder / f"{name}.json").read_text(encoding="utf-8")) for name in ("fuzzing", "kills"))
+    accepted = sum(count["accepted"] for count in fuzzing["readers"].values())
+    ended = sum(kills["kills"].values())
+    return [["files changed at random", f"{fuzzing['inputs']:,} files for {len(fuzzing['readers'])} readers",
+             f"{accepted:,} accepted, the others refused by one line; crashes, hangs, defects: {fuzzing['findings'] or 'none'}", f"`{fuzzing['command']}`"],
+            ["programs killed at random times", f"{ended} runs of {len(kills['kills'])} kinds", f"resumed: files that differ from those of a run "
+             f"that was never ended: {len(kills['findings']) or 'none'}", f"`{kills['command']}`"]]
 
 
-def summary_of(table):
-    rows = [(promised, cells) for tasks in table.values() for (_, promised, _), cells in tasks.items()]
-    refused = sum(promised == "refused" for promised, _ in rows)
-    told = sum(promised.startswith("none") for promised, _ in rows)
-    wrong = 0
-    for promised, cells in rows:
-        for _, measured in cells:
-            found = re.match(r"error (\S+), bound (\S+),", measured)
-            wrong += found is not None and float(found[1]) > float(found[2])
-    return (f"**{len(table)} cases, {len(rows)} tasks: right {len(rows) - refused - told - wrong}, refused with a sentence {refused}, "
-            f"wrong: {wrong or 'none'}.** Of {told} more nothing is promised:\nthe page says what they do. A task whose test fails writes no "
-            "page.\n\n")
+def summarize(folder):
+    import figures
+
+    rows = tables.rows_of(folder / "tasks.csv")
+    tables.write_rows(folder / "kinds.csv", ["kind", "such as", "what is done", "right", "refused", "not promised", "wrong"], kinds_table(rows))
+    tables.write_rows(folder / "shortfalls.csv", ["case", "task", "found"], shortfalls_of(rows))
+    tables.write_rows(folder / "attacks.csv", ["attack", "tried", "found", "command"], attacks_of(folder))
+    groups = {}
+    for row in rows:
+        if numbers := numbers_of(row["measured"]):
+            groups.setdefault(row["task"].split()[0].rstrip(","), []).append(numbers[::-1])
+    figures.bound_and_error(folder / "bounds", groups, "bound of the error that the program states", "true error")
+    tables.fill()
 
 
-def section_of(name, why, tasks):
-    text = f"### {name}\n\n{why[0].upper()}{why[1:]}.\n\n| task | promised | measured |\n|---|---|---|\n"
-    for (task, promised, _), cells in tasks.items():
-        shown = merged([(run, floored(task, promised, measured)) for run, measured in cells])
-        text += "| " + " | ".join(cell.replace("|", "\\|") for cell in (task, promised, shown)) + " |\n"
-    return text + "\n"
-
-
-def page_of(runs, rows_of_runs, attacked):
-    table = {}  # case -> (task, promised) -> [(run, measured)]; the same task may come more than once
-    why = {}
+def tasks_of(runs, rows_of_runs):
+    """Rows of tasks.csv."""
+    table, why = {}, {}  # case -> (task, promised, number) -> [(run, measured)]; the same task may come more than once
     for (build, threads, _), rows in zip(runs, rows_of_runs):
         seen = {}
         for row in rows:
@@ -185,37 +179,25 @@ def page_of(runs, rows_of_runs, attacked):
             cells = table.setdefault(row["case"], {}).setdefault((*task, number), [])
             cells.append(((build, threads), row["measured"]))
             why[row["case"]] = row["why"]
-    table = {name: table[name] for name in cases_of_sources()}
-    parts = {"Statics": [], "Dynamics": []}
-    for name, tasks in table.items():
-        parts["Statics" if any(task.startswith(STATICS) for task, _, _ in tasks) else "Dynamics"].append(name)
-    text = HEAD + summary_of(table) + READING + said_of(runs) + "\n"
-    for part, names in parts.items():
-        text += f"{part}: " + " ·\n".join(f"[{name}](#{anchor_of(name)})" for name in names) + ".\n\n"
-    text += attacked
-    text += shortfalls_of(table)
-    for part, names in parts.items():
-        text += f"## {part}\n\n" + "".join(section_of(name, why[name], table[name]) for name in names)
-    return text.rstrip("\n") + "\n"
+    return [[kind, case, why[case], task, promised, merged([(run, floored(task, promised, measured)) for run, measured in cells])]
+            for case, kind in cases_of_sources().items() for (task, promised, _), cells in table[case].items()]
 
 
 def main():
     if len(sys.argv) in (4, 5) and sys.argv[1] == "write":
-        runs = runs_of(sys.argv[2:-1])
-        attacked = attacks()  # before the tests, which take minutes
-        page = page_of(runs, [rows_of(run) for run in runs], attacked)
-        with open(sys.argv[-1], "w", encoding="utf-8") as file:
-            file.write(page)
+        runs, folder = runs_of(sys.argv[2:-1]), pathlib.Path(sys.argv[-1])
+        tables.write_rows(folder / "tasks.csv", STORED, tasks_of(runs, [rows_of(run) for run in runs]))
+        summarize(folder)
+        return 0
+    if len(sys.argv) == 3 and sys.argv[1] == "summarize":
+        summarize(pathlib.Path(sys.argv[2]))
         return 0
     if len(sys.argv) == 3 and sys.argv[1] == "check":
-        with open(sys.argv[2], encoding="utf-8") as file:
-            listed = re.findall(r"^### (.+)$", file.read(), re.MULTILINE)
+        stored = {row["case"]: row["kind"] for row in tables.rows_of(pathlib.Path(sys.argv[2]) / "tasks.csv")}
         tested = cases_of_sources()
-        for name in sorted(set(tested) - set(listed)):
-            print(f"the page has no case '{name}': write it anew")
-        for name in sorted(set(listed) - set(tested)):
-            print(f"the page has a case '{name}' that no test has: write it anew")
-        return 0 if tested and sorted(tested) == sorted(listed) else 1
+        for name in sorted(stored.keys() ^ tested.keys() | {name for name in stored.keys() & tested.keys() if stored[name] != tested[name]}):
+            print(f"the case '{name}' is {tested.get(name, 'in no test')}, and stored as {stored.get(name, 'nothing')}: write the tables anew")
+        return 0 if tested and stored == tested else 1
     print(__doc__)
     return 2
 

@@ -64,7 +64,7 @@ def assemblies(eq, request):
             table(["kind", "discs", "contacts", "one thread, s", "two threads, s", "peak memory, bytes a disc"], made) +
             "Files of Delaunay assemblies, two threads, checks included; plain: the same number of bytes in one piece. Files stay in "
             "the memory of the system.\n\n" +
-            table(["format", "discs", "MB", "written, s", "plain, s", "MB/s", "read, s", "plain, s", "MB/s"], files))
+            table(["format", "discs", "MB", "written, s", "plain written, s", "written, MB/s", "read, s", "plain read, s", "read, MB/s"], files))
 
 
 def file_row(eq, assembly, name, rounds):

@@ -69,21 +69,23 @@ def table(head, rows):
     return "\n".join([lines[0], "|" + "|".join("-" * (width + 2) for width in widths) + "|", *lines[1:]]) + "\n"
 
 
-def medians(series):
-    head = ["solver", "threads", *STAGES, "total, s", "iterations", "K", "nnz(L)", "stored/nnz(L)", "factor, MB", "peak, MB", "peak/factor",
-            "CPU", "residual"]
+HEAD = ["assembly", "discs", "rounds", "solver", "threads", *STAGES, "total, s", "iterations", "K", "nnz(L)", "stored/nnz(L)", "factor, MB",
+        "peak, MB", "peak/factor", "CPU", "residual"]
+
+
+def medians(kind, series):
     rows = []
     for (solver, threads), runs in series.items():
         m = {name: statistics.median(run[name] for run in runs) for name in runs[0] if name != "machine"}
         entries, stored = m["nonzeros"], m["factor_bytes"]
-        rows.append([SOLVERS[solver], str(threads), *(f"{m[stage]:.3g}" for stage in STAGES), spread([run["total"] for run in runs]),
-                     f"{m['iterations']:.0f}" if m["iterations"] else "-", f"{m['assembly']:.3g}", f"{entries:.3e}" if entries else "-",
-                     f"{stored / 8 / entries:.2f}" if entries else "-", f"{1e-6 * stored:.0f}", f"{1e-6 * m['peak_bytes']:.0f}",
-                     f"{m['peak_bytes'] / stored:.2f}", f"{m['cpu']:.3g}", f"{m['residual']:.1e}"])
-    return table(head, rows)
+        rows.append([kind, str(runs[0]["discs"]), str(len(runs)), SOLVERS[solver], str(threads), *(f"{m[stage]:.3g}" for stage in STAGES),
+                     spread([run["total"] for run in runs]), f"{m['iterations']:.0f}" if m["iterations"] else "-", f"{m['assembly']:.3g}",
+                     f"{entries:.3e}" if entries else "-", f"{stored / 8 / entries:.2f}" if entries else "-", f"{1e-6 * stored:.0f}",
+                     f"{1e-6 * m['peak_bytes']:.0f}", f"{m['peak_bytes'] / stored:.2f}", f"{m['cpu']:.3g}", f"{m['residual']:.1e}"])
+    return rows
 
 
-def ratios(series):
+def ratios(kind, series):
     """equidem over CHOLMOD with its own orderings, and its methods over those before them: medians of the ratios within a round."""
     rows, keys = [], list(series)
     for ours in (key for key in keys if key[0].startswith("equidem")):
@@ -95,9 +97,9 @@ def ratios(series):
                     for name in ("total", "nonzeros", "peak_bytes")}
             entries = statistics.median(over["nonzeros"])
             share = statistics.median(run["assembly"] / run["total"] for run in series[ours])
-            rows.append([SOLVERS[ours[0]], SOLVERS[theirs[0]], str(ours[1]), spread(over["total"]), f"{entries:.3f}" if entries > 0 else "-",
+            rows.append([kind, str(series[ours][0]["discs"]), SOLVERS[ours[0]], SOLVERS[theirs[0]], str(ours[1]), spread(over["total"]), f"{entries:.3f}" if entries > 0 else "-",
                          f"{statistics.median(over['peak_bytes']):.2f}", f"{100 * share:.1f} %"])
-    return "\n" + table(["of", "over", "threads", "total", "nnz(L)", "peak", "K / total of equidem"], rows) if rows else ""
+    return rows
 
 
 def main():
@@ -119,20 +121,23 @@ def main():
     if unknown:
         parser.error(f"there is no solver '{unknown[0]}'; there are {', '.join(SOLVERS)}")
     program = request.build.resolve() / "tools" / "bench" / "bench_static"
-    text, all_runs, machine = "", [], ""
+    solvers, over, all_runs, machine = [], [], [], ""
     for kind in request.kinds:
         for discs in map(float, request.discs):
             series = compared(program, request, kind, discs)
             first = next(iter(series.values()))
             machine = first[0]["machine"]
-            text += (f"\n{kind}, {first[0]['discs']} discs, {first[0]['unknowns']} unknowns, {len(first)} rounds\n\n" + medians(series) + ratios(series))
+            solvers += medians(kind, series)
+            over += ratios(kind, series)
             all_runs += [{"kind": kind, "solver": solver, "threads": int(threads), "runs": runs} for (solver, threads), runs in series.items()]
     skipped, command = False, "tools/bench/static.py"
     for word in sys.argv[1:]:  # where a page is written, and the build, do not change it
         if not skipped and word not in ("--markdown", "--build"):
             command += f" {word}"
         skipped = not skipped and word in ("--markdown", "--build")
-    page = f"# Static solves\n\n    {command}\n\n{machine}.\n{TEXT}{text}"
+    page = f"# Static solves\n\n    {command}\n\n{machine}.\n{TEXT}\n## Solvers\n\n" + table(HEAD, solvers)
+    if over:
+        page += "\n## Ratios\n\n" + table(["assembly", "discs", "of", "over", "threads", "total", "nnz(L)", "peak", "K / total of equidem"], over)
     print(page)
     if request.markdown:
         request.markdown.write_text(page, encoding="utf-8")

@@ -388,6 +388,12 @@ def reproduce(options, page):
     tables = {f"{name}_values": rows for one in sections for name, rows in one.tables.items()}
     tables["comparisons"] = [{"item": one.name, **{key: row[key] for key in row if key != "agrees"}}
                              for one in sections for row in one.comparisons]
+    tables["summary"] = [{"subject": one.heading, "compared": len(one.verdicts), "agree or hold": sum(one.verdicts),
+                          "source": ", ".join(one.sources)} for one in sections]
+    tables["differences"] = [
+        {"quantity": row.quantity, "published": shown(row.published, row.published_error), "source": row.source,
+         "ours": shown(row.ours, row.standard_error), "because": row.verdict.partition(": ")[2].replace(" (see below)", "")}
+        for one in sections for row in one.comparisons if not row.agrees]
     items = [{"item": one.name, **{key: one[key] for key in ("seconds", "comparisons", "trends", "stored")}}
              for one in sections]
     return Output({"sections": sections, "command": command}, {"items": items}, tables,

@@ -1,74 +1,116 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page data/accuracy.md: studies of data/studies, and results that are stored in the page itself."""
+"""What accuracy costs: tables and figures of data/accuracy, which the page data/accuracy.md shows."""
+import csv
 import json
+import math
 import os
+import re
 import statistics
 import time
 
-from common import ROOT, Failure, machine, plots_of, seconds, table, tables_of
+from common import Failure, seconds, stamp
+from tables import rows_of, write_rows
 
-# Study files of the page, in its order: heading and task of the first table; no task: no row there.
-STUDIES = {
-    "integrators": ("A bonded disc that vibrates", "elastic energy of a vibrating disc"),
-    "abe_lattice": ("Abe's tension test", "ν from a block in tension"),
-    "random_cells": ("Random cells", "G of random cells of 50 discs over kN, standard error"),
-    "settled_void_ratio": ("Void ratio of discs that fell", ""),
+# Kinds of work: their study files, the task in the table, the axis of the figure.
+KINDS = {
+    "integrators": (["integrators"], "vibration of a bonded disc", "relative error of the energy"),
+    "impact": (["impact", "impact_long_steps"], "three impacts of a ball", "relative error of the energy"),
+    "abe_lattice": (["abe_lattice"], "ν from a block in tension", "error of ν"),
+    "random_cells": (["random_cells"], "G of random networks, standard error", "standard error of G/kN"),
 }
+NAMES = {"[50]": "cells of 50 discs", "[400]": "cells of 400", "centre": "gauge at the centre", "quarter": "gauge at a quarter"}
+STATICS = "displacements of {discs} discs"
 ASKED = ("1e-2", "1e-3", "1e-4", "1e-8")
-STORED = "stored"  # mark of a row of the first table, and begin of a section, that was measured by an earlier commit
-# Commands with --accuracy: what is computed, command, repetitions.
+BLOCK = "solve data/studies/block.toml"
+ROWS = {317: "", 1001: " --set assembly.rows=1001 --set assembly.columns=1001"}  # options of a block of as many rows
+# Method and options of each way to solve the block, multigrid being the automatic one; of a million discs that one alone.
+ITERATIONS = [("multigrid", f"--accuracy {accuracy}") for accuracy in ("1e-2", "1e-4", "1e-6", "1e-8")] + [("multigrid", "")]
+ELIMINATION = [(method, f"--set solver.method={method} --set solver.max_refinements={steps}")
+               for method in ("multifrontal", "cholmod", "umfpack") for steps in (0, 4)]
+# Commands with --accuracy: what is computed, command.
 VERBS = [
     ("K, G and ν of random cells", "homogenize data/cases/random_cell.toml --accuracy 1e-2"),
-    ("ν and G of a lattice from a block in tension", "solve data/cases/abe1996_fig6.toml --accuracy 1e-3"),
+    ("ν from a block in tension", "solve data/cases/abe1996_fig6.toml --accuracy 1e-3"),
     ("motion of bonded discs", "run data/cases/run_pulse.toml --accuracy 1e-2"),
 ]
-
-TEXT = """# Cost of accuracy
-
-Error against time, measured; written by
-
-    {command}
-
-Times are medians on one thread, on {machine}.
-
-{summary}*error* is the measured one; of the periodic cell the bound that is printed, and of the last {verbs} rows, which choose their setting
-themselves, the estimate, with 95 % confidence. Times of these rows are those of the whole command. A study is repeated with all its
-settings, plots and CSV by `equidem study data/studies/NAME.toml --out DIR`. Its times are medians over rounds, each with all settings in
-random order. What is called stored was measured once, by the commit that its section names.
-
-## What is asked for is kept
-
-Where a verb has a setting to choose, `--accuracy X` chooses it: `equidem homogenize` size and number of random cells, `equidem solve`
-the size of the block of a tension test, `equidem run` the time step of bonded discs. Tests make random requests, whose true error is known:
-
-{requests}*cheap* settings cost at most twice the cheapest sufficient one. Pilot computations are not counted there; the report states their cost:
-two to five runs for a time step, thousands of discs for random cells, and little compared with a large block.
-
-"""
+POINTS = ["kind", "way", "setting", "seconds", "error", "commit"]
+WAYS = ["task", "accuracy", "time", "error", "cheapest way", "command"]
 
 
 def label(row):
-    values = ", ".join(f"{key} = {value:.6g}" for key, value in row["setting"].items())
-    return ", ".join(part for part in (row["method"], values) if part)
+    values = ", ".join(f"{key.rpartition('.')[2]} = {value:.6g}" for key, value in row["setting"].items())
+    method, _, more = row["method"].partition(", ")
+    return ", ".join(part for part in (NAMES.get(method, method), re.sub(r"^(\w+\.)+", "", more), values) if part)
 
 
-def worst(row, kind="assured_errors"):
+def error_of(row, kind="assured_errors"):
     """The largest of the errors of a row; none where it has none."""
     errors = [error for error in row[kind].values() if error is not None]
     return max(errors) if errors else None
 
 
-def cheapest_ways(name, result):
-    """Rows of the first table: the cheapest setting for each accuracy; one that serves for several, once."""
-    done = [row for row in result["settings"] if "refusal" not in row and row["seconds"]["repetitions"]]
+def timed_rows(result):
+    return [row for row in result["settings"] if "refusal" not in row and row["seconds"]["repetitions"]]
+
+
+def cheapest(rows):
+    """Of rows (label, error that is assured, seconds, ...) the cheapest for each accuracy; one that serves for several, once. Of
+    times that two digits do not distinguish the last counts, the finest level."""
     chosen = {}
     for asked in ASKED:
-        sufficient = [row for row in done if worst(row) is not None and worst(row) <= float(asked)]
+        sufficient = [row for row in rows if row[1] is not None and row[1] <= float(asked)]
         if sufficient:
-            chosen[label(min(sufficient, key=lambda row: row["seconds"]["median"]))] = asked
-    by_label = {label(row): row for row in done}
-    return [[STUDIES[name][1], asked, way, f"{worst(by_label[way], 'errors'):.1e}", seconds(by_label[way]["seconds"]["median"]),
-             f"`equidem study data/studies/{name}.toml --accuracy {asked}`"] for way, asked in chosen.items()]
+            chosen[min(reversed(sufficient), key=lambda row: float(f"{row[2]:.2g}"))] = asked
+    return [(asked, row) for row, asked in chosen.items()]
+
+
+def of_studies(run, kind):
+    """Points and cheapest ways of the studies of a kind; a study of one method shows what it varies as another curve."""
+    names, task, _ = KINDS[kind]
+    points, rows = [], []
+    for name in names:
+        for row in timed_rows(run.study(name)):
+            error, taken = error_of(row, "errors"), row["seconds"]["processor_median"]
+            if error is None:
+                continue
+            method = row["method"].partition(",")[0] or "measured"
+            way = NAMES.get(method, method) + (", long steps" if name.endswith("long_steps") else "")
+            points.append([kind, way, label(row), f"{taken:.4g}", f"{error:.3g}", stamp()["commit"]])
+            rows.append((label(row), error_of(row), taken, error, name))
+    return points, [[task, asked, seconds(taken), f"{error:.1e}", way, f"`equidem study data/studies/{name}.toml --accuracy {asked}`"]
+                    for asked, (way, _, taken, error, name) in cheapest(rows)]
+
+
+def motions(run, command):
+    """Displacements of all discs, and the seconds of the solution that the report states."""
+    folder = run.folder / "block"
+    run.call([run.program, *command.split(), "--quiet", "--threads", "1", "--out", folder, "--overwrite"])
+    with open(folder / "discs.csv", newline="", encoding="utf-8") as file:
+        found = [float(row[axis]) for row in csv.DictReader(file) for axis in ("ux_m", "uy_m")]
+    times = json.loads((folder / "result.json").read_text(encoding="utf-8"))["times"]
+    return found, sum(taken for stage, taken in times.items() if stage not in ("assembly", "files"))
+
+
+def statics(run):
+    """Points and ways of the block, beside the motions by elimination with ten steps of refinement."""
+    points, ways = [], []
+    for rows, size_of in ROWS.items():
+        truth, _ = motions(run, f"{BLOCK}{size_of} --set solver.method=multifrontal --set solver.max_refinements=10")
+        size, found = math.hypot(*truth), []
+        for method, options in ITERATIONS + ELIMINATION * (rows < 1000):
+            command = f"{BLOCK}{size_of} {options}".strip()
+            taken, error = [], 0.0
+            for _ in range(run.options.rounds):
+                moved, one = motions(run, command)
+                taken.append(one)
+                error = math.hypot(*(a - b for a, b in zip(moved, truth))) / size
+            way = ", ".join([method, *re.findall(r"[\w]+[ =][\w.-]+$", options)])
+            found.append((way, error, statistics.median(taken), command))
+            points.append([f"solvers_{rows}", method, way, f"{found[-1][2]:.4g}", f"{error:.3g}", stamp()["commit"]])
+        discs = f"{len(truth) // 2:,}".replace(",", " ")
+        ways += [[STATICS.format(discs=discs), asked, seconds(taken), f"{error:.1e}", way, f"`equidem {command}`"]
+                 for asked, (way, error, taken, command) in cheapest(found[::-1])]
+    return points, ways
 
 
 def timed(run, command):
@@ -82,91 +124,61 @@ def timed(run, command):
     return json.loads(target.read_text(encoding="utf-8")), seconds(statistics.median(times))
 
 
-def cell_row(run):
-    """A lattice has a cell without sides: exact to round-off, with the bound that the program states."""
+def verb_rows(run):
+    """A lattice has a cell without sides, exact to round-off; the others choose their setting themselves."""
     command = "homogenize data/cases/hexagonal_cell.toml"
     result, taken = timed(run, command)
     bound = result["error_bound"] / max(max(map(abs, row)) for row in result["stiffness"])
-    return ["K, G and ν of a lattice", "round-off", f"a periodic cell of {result['discs']} discs", f"{bound:.1e}", taken,
-            f"`equidem {command}`"]
-
-
-def verb_rows(run):
-    rows = []
+    rows = [["K, G and ν of a lattice", "round-off", taken, f"{bound:.1e}", f"a periodic cell of {result['discs']} discs", f"`equidem {command}`"]]
     for task, command in VERBS:
         result, taken = timed(run, command)
         reached = result["accuracy"]
-        way = ", ".join(f"{key} = {value:.6g}" for key, value in reached["value"].items())
-        rows.append([task, command.split()[-1], way, f"{reached['estimated']:.1e}", taken,
-                     f"`equidem {command}`"])
+        way = ", ".join(f"{key.rpartition('.')[2]} = {value:.6g}" for key, value in reached["value"].items())
+        rows.append([task, command.split()[-1], taken, f"{reached['estimated']:.1e}", way, f"`equidem {command}`"])
     return rows
 
 
 def requests(run):
-    """Rates of kept requests: from the tests of the same build, else those that an earlier run has kept."""
-    kept = run.kept / "requests.json"
+    """Rates of kept requests, where the build has the tests that make them; else the stored ones stay."""
     tests = run.program.parents[1] / "tests"
-    if (tests / "test_study").exists() and (tests / "test_homogenize").exists():
-        target = run.folder / "requests"
-        for program in ("test_study", "test_homogenize"):
-            run.call([tests / program, "accuracy_asked*,what_is_recommended*"], env={**os.environ, "EQUIDEM_REQUESTS": str(target)})
-        got = [json.loads(line) for line in target.read_text(encoding="utf-8").splitlines()]
-        kept.write_text(json.dumps(got, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    if not kept.exists():
-        raise Failure(f"neither '{tests}' has the tests that make requests, nor does '{kept}' keep their rates")
+    if not all((tests / program).exists() for program in ("test_study", "test_homogenize")):
+        if not (run.data / "accuracy" / "requests.csv").exists():
+            raise Failure(f"neither '{tests}' has the tests that make requests, nor are their rates stored")
+        return
+    target = run.folder / "requests"
+    for program in ("test_study", "test_homogenize"):
+        run.call([tests / program, "accuracy_asked*,what_is_recommended*"], env={**os.environ, "EQUIDEM_REQUESTS": str(target)})
 
     def share(row, key):
         return f"{100 * row[key] / row['requests']:.1f} %" if key in row else ""
 
-    rows = [[row["task"], str(row["requests"]), share(row, "kept"), share(row, "honest"), share(row, "cheap")]
-            for row in json.loads(kept.read_text(encoding="utf-8"))]
-    return table(["request", "number", "within what was asked", "within what was estimated", "cheap"], rows)
+    got = [json.loads(line) for line in target.read_text(encoding="utf-8").splitlines()]
+    write_rows(run.data / "accuracy" / "requests.csv", ["request", "number", "within what was asked", "within what was estimated", "cheap"],
+               [[row["task"], str(row["requests"]), share(row, "kept"), share(row, "honest"), share(row, "cheap")] for row in got])
 
 
-def orders(result):
-    rows = []
-    for curve in result["orders"]:
-        if curve["observed_order"] is None or curve.get("theoretical_order") is None:
-            continue
-        spread = f" ± {curve['uncertainty']:.2g}" if curve["uncertainty"] is not None else ""
-        rows.append([curve["method"], curve["quantity"], f"{curve['observed_order']:.3f}{spread}", f"{curve['theoretical_order']:g}",
-                     "agrees" if curve["agrees"] else "differs"])
-    return table(["", "error of", "order measured", "theory", ""], rows) if rows else ""
+def draw(folder):
+    """A figure for each kind of points.csv."""
+    import figures
+
+    kinds = {}
+    for row in rows_of(folder / "points.csv"):
+        kinds.setdefault(row["kind"], {}).setdefault(row["way"], []).append((float(row["seconds"]), float(row["error"])))
+    for kind in (*KINDS, "solvers_317"):
+        series = kinds[kind]
+        axis = KINDS[kind][2] if kind in KINDS else "relative error of the displacements"
+        figures.curves(folder / kind, series, "time, s", axis, floor=1e-16, above=kind.startswith("solvers"))
 
 
-def front(result):
-    """The settings than which none is both faster and as accurate."""
-    by_label = {label(row): row for row in result["settings"]}
-    rows = [[setting, seconds(by_label[setting]["seconds"]["median"]), f"{by_label[setting]['errors'][each['quantity']]:.2g}"]
-            for each in result["fronts"] for setting in each["settings"]]
-    return table(["fastest settings of their accuracy", "time", "error"], rows) if rows else ""
-
-
-def section(run, name, result):
-    text = f"## {STUDIES[name][0]}\n\n{result['title']}. `equidem study data/studies/{name}.toml`\n\n"
-    for plot in plots_of(result, run.folder):
-        text += f"![{STUDIES[name][0]}]({run.keep_plot(name, plot, name)})\n\n"
-    told = orders(result)
-    remarks = [result["advice"]] * bool(told and result["advice"]) + result["notes"]
-    return text + told + front(result) + "".join(f"- {remark.strip()}\n" for remark in remarks) + "\n" * bool(remarks)
-
-
-def stored(page):
-    """Rows of the first table, and sections, of the present page that no study file makes."""
-    first, *sections = page.split("\n## ")
-    rows = [row for row in tables_of(first)[0] if row[-1] == STORED]
-    kept = [f"## {text.rstrip()}\n\n" for text in sections if text.split("\n\n")[1].lower().startswith(STORED)
-            and text.splitlines()[0] not in [heading for heading, _ in STUDIES.values()]]
-    return rows, kept
-
-
-def page(run):
-    results = {name: run.study(name) for name in STUDIES}
-    rows = [row for name, result in results.items() if STUDIES[name][1] for row in cheapest_ways(name, result)]
-    verbs = verb_rows(run)
-    stored_rows, stored_sections = stored((ROOT / "data" / "accuracy.md").read_text(encoding="utf-8"))
-    summary = table(["task", "accuracy", "cheapest way", "error", "time", "command"], [*rows, *stored_rows, cell_row(run), *verbs])
-    text = TEXT.format(command=run.command(), machine=machine(results["integrators"]), summary=summary, verbs=len(verbs),
-                       requests=requests(run))
-    sections = [section(run, name, result) for name, result in results.items()]
-    return (text + "".join(sections + stored_sections)).rstrip() + "\n"
+def make(run):
+    folder = run.data / "accuracy"
+    points, ways = [], []
+    for found in [*(of_studies(run, kind) for kind in KINDS), statics(run)]:
+        points += found[0]
+        ways += found[1]
+    write_rows(folder / "points.csv", POINTS, points)
+    write_rows(folder / "ways.csv", WAYS, [*ways, *verb_rows(run)])
+    found = stamp(run.study("integrators"))
+    write_rows(folder / "measured.csv", list(found), [list(found.values())])
+    requests(run)
+    draw(folder)

@@ -2,12 +2,13 @@
 """Runs of equidem, and what both pages say of them."""
 import json
 import os
-import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "docs" / "site"))
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 
@@ -31,8 +32,6 @@ class Run:
         self.options, self.folder = options, Path(folder)
         self.program = Path(options.program).resolve()
         self.data = Path(options.data).resolve()
-        self.kept = self.data / "studies"
-        self.kept.mkdir(parents=True, exist_ok=True)
 
     def call(self, command, **more):
         done = subprocess.run([str(part) for part in command], capture_output=True, text=True, cwd=ROOT, check=False, **more)
@@ -58,40 +57,17 @@ class Run:
             raise Failure(f"'{path}' does not exist: build all of that preset first")
         return path
 
-    def keep_plot(self, study, plot, name):
-        """Copy PNG and SVG of a plot. Returns its Markdown."""
-        for extension in ("png", "svg"):
-            shutil.copyfile(self.folder / study / f"{plot}.{extension}", self.kept / f"{name}.{extension}")
-        return f"studies/{name}.png"
 
-    def command(self):
-        quick = " --quick" if self.options.quick else ""
-        if self.options.only:
-            quick += f" --only {self.options.only}"
-        return f"tools/bench/pages build/release/tools/equidem{quick} --budget {self.options.budget:g} --rounds {self.options.rounds}"
+def stamp(result=None):
+    """Commit of the source, date, processor and compiler of what is measured, the last two from the JSON of a study."""
+    def git(*words):
+        return subprocess.run(["git", *words], capture_output=True, text=True, cwd=ROOT, check=False).stdout.strip()
 
-
-def plots_of(result, folder):
-    """Names of the plots of a study."""
-    names = [f"{result['study']}_{quantity['name']}" for quantity in result["quantities"]]
-    return [name for name in names if (folder / result["study"] / f"{name}.png").exists()]
-
-
-def bars(run, name, title, unit, values):
-    """A chart of horizontal bars in the folder of plots. Returns its Markdown."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(8, 0.5 + 0.45 * len(values)), layout="constrained")
-    axes.bar_label(axes.barh(list(values), list(values.values()), color="#0072b2"), fmt="%.3g", padding=3)
-    axes.invert_yaxis()
-    axes.set(xlabel=unit, title=title)
-    axes.spines[["top", "right"]].set_visible(False)
-    for extension in ("png", "svg"):
-        figure.savefig(run.kept / f"{name}.{extension}", dpi=110, metadata={"Date": None} if extension == "svg" else {})
-    plt.close(figure)
-    return f"studies/{name}.png"
+    found = {"commit": git("rev-parse", "--short=8", "HEAD"), "date": time.strftime("%Y-%m-%d")}
+    if result:
+        m = result["machine"]
+        found |= {"processor": f"{m['processor'] or 'unknown'}, {m['cores']} cores", "build": f"{m['build']}, compiler {m['compiler']}"}
+    return found
 
 
 def seconds(value):
@@ -101,32 +77,6 @@ def seconds(value):
     return f"{value * 1e9:.3g} ns"
 
 
-def machine_text(run):
-    return machine(run.study("integrators"))
-
-
-def machine(result):
-    m = result["machine"]
-    return f"{m['processor'] or 'unknown processor'}, {m['cores']} cores; {m['build']}, compiler {m['compiler']}"
-
-
 def table(head, rows):
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n\n"
-
-
-def tables_of(markdown, heading=""):
-    """The tables below a heading, as lists of rows of cells, the head first."""
-    text = markdown[markdown.index(heading):] if heading else markdown
-    if heading:
-        text = text.split("\n## ", 2)[0 if not text.startswith("## ") else 0]
-    found, rows = [], []
-    for line in text.splitlines() + [""]:
-        if line.startswith("|"):
-            cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-            if not set("".join(cells)) <= set("-"):
-                rows.append(cells)
-        elif rows:
-            found.append(rows)
-            rows = []
-    return found

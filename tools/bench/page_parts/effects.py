@@ -1,70 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page data/effects.md: each scene is the one before with something more, and is timed by the Python module."""
+"""What effects cost: tables and figure of data/effects. Each scene is the one before with something more, timed by the Python module."""
 import copy
 import math
 import random
 import statistics
 
-from common import bars, machine_text, table, tables_of
+from common import stamp
+from tables import rows_of, tables_of, write_rows
 
 DISC_STEPS = 1e6  # of each scene in a timing
 R, STIFFNESS, STEP = 0.01, 1e6, 1e-5  # m, N/m, s of the bodies that collide
 OVERLAP = 0.002 * R  # of discs that press one another
-
-TEXT = """# Cost of effects
-
-A scene pays for the effects that it has. Written by
-
-    {command}
-
-with the Python module, `bench_dynamic --absent` and `bench_collisions --absent`, on
-{machine}.
-
-## The report
-
-`run` lists the effects that a scene has, and why it lacks the others; the loop is chosen by them before the first step.
-`equidem {case}` prints, among other things:
-
-```
-{report}
-```
-
-## In motion
-
-{discs} discs, {pieces:,.0f} disc-steps of each scene per timing, {rounds} rounds, median of the time of the steps, one thread. Each scene is the
-one above it with one more effect. A scene with "or" has its effect in place of the last one with "+", and is compared with the one
-before that; the next scene does without it. *evaluations* are those of a contact, per disc and step; bonds are not among them.
-
-"""
-
-AFTER = """C is the linear spring and dashpot, P the energy map of Fujioka & Ushijima (2005), which is for discs alone and for collisions of pairs.
-From normal contacts to friction with tangential springs, dashpots and rotation it is {factor:.0f} % more here (law C). For comparison,
-published: on a P100 tangential forces with history cost up to 38.1 % more than normal forces alone, torques up to 3.8 % more (Vilnius
-Gediminas Technical University, *Performance evaluation of various DEM models on GPU*); those scenes are three-dimensional.
-
-Contacts of law C are computed several at a time, with tangential springs and with friction that always slides (no tangential spring).
-Ellipses and clumps have loops of their own beside that of the discs. The contacts of maps are computed one by one. Torques come with
-the tangential springs; a scene without them has no rotations at all, in memory or in time.
-
-Walls that move, are shaken or follow a stress and a case of one stage are beside the loop over contacts: they add
-some per cent at most, which is the noise. Where a stage begins, the scene is checked, sorted and searched for neighbours as at the
-start of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform (shear as
-Lees and Edwards) count the stress in every step. Bonds are computed
-eight at a time, in the loop that is compiled for the springs, the dashpots and the strengths that a scene has; strengths are compared
-with the forces where these are found. Dashpots are solved exactly, one group of bonds after the other. A network in which nothing collides or breaks is stepped
-faster as bonded discs, in finite motion too (the first table).
-
-## What is off costs nothing
-
-Each loop beside one that is written by hand for its scene alone, without anything that a scene may switch on, with the same layout of
-memory and the same vectors: 1.00 means that effects which the scene lacks take no time.
-
-{bonded}The loops by hand for colliding discs lack also what every run of such bodies has: the search for neighbours, the ledger of energies,
-walls that may move. A packed bed, which lacks what the tables above add, beside a loop that knows its pairs beforehand:
-
-{bed}Free flight, where nothing else is left to do, beside `v += g dt; x += v dt`:
-
-{flight}"""
+SCENES = ["problem", "scene", "unknowns per disc", "bytes per disc", "evaluations", "ns per disc-step", "added by the effect",
+          "over the plain scene"]
+STATICS = ["scene", "unknowns per disc", "entries of the factor per disc", "bytes of the solver per disc", "µs per disc", "over the plain scene",
+           "relative residual"]
 
 
 class Scene:
@@ -251,11 +201,9 @@ def rock(side):
         ("+ strengths, of which none is reached", put("strength", tension=1e9, shear=1e9))])
 
 
-PROBLEMS = [("bonded discs", "effects_bonded", bonded), ("colliding discs, law C, at rest on a floor", "effects", at_rest),
-            ("colliding discs, law P, flying about in a box", "effects_law_P", flying),
-            ("colliding discs, law C, pressed in a box", "effects_box", in_box),
-            ("colliding discs, law C, in a cell", "effects_cell", in_cell),
-            ("colliding discs, law C, bonded", "effects_bonds", rock)]
+PROBLEMS = [("bonded discs", bonded), ("colliding discs at rest on a floor", at_rest),
+            ("discs flying in a box, energy map", flying), ("colliding discs pressed in a box", in_box),
+            ("colliding discs in a cell", in_cell), ("colliding discs, bonded", rock)]
 
 
 def measured(run, scenes, work, seconds_of):
@@ -281,33 +229,28 @@ def compared(scenes):
     return found
 
 
-def chain_table(scenes, contacts_of):
+def chain_rows(problem, scenes, contacts_of):
     """Of scenes whose times are ns of a disc-step."""
     lines, plain = [], scenes[0][2]
     for name, result, ns, base in compared(scenes):
         memory = result["bytes_per_grain"] if "bytes_per_grain" in result else result["bytes_per_disc"]
-        lines.append([name, "3" if "rotation" in result["effects"]["active"] else "2", f"{memory:.0f}", f"{contacts_of(result):.2g}", f"{ns:.1f}",
-                      "" if base is None else f"{round(100 * (ns / base - 1)):+d} %", f"{ns / plain:.2f}"])
-    return table(["scene", "unknowns per disc", "bytes per disc", "evaluations", "ns per disc-step", "added by the effect",
-                  "over the plain scene"], lines)
+        lines.append([problem, name, "3" if "rotation" in result["effects"]["active"] else "2", f"{memory:.0f}", f"{contacts_of(result):.2g}",
+                      f"{ns:.1f}", "" if base is None else f"{round(100 * (ns / base - 1)):+d} %", f"{ns / plain:.2f}"])
+    return lines
 
 
 def in_motion(run, eq, side):
-    """Text of all tables, and of each problem the ns of its scenes."""
-    text, times = "", {}
-    for problem, name, make in PROBLEMS:
+    def contacts(result):
+        if "evaluations" in result:
+            return result["evaluations"] / (result["steps"] * side * side)
+        return result["contacts"] / result["discs"]
+
+    lines = []
+    for problem, make in PROBLEMS:
         scenes = [(label, result.to_dict(), 1e9 * seconds / DISC_STEPS)
                   for label, result, seconds in measured(run, make(side), lambda scene: scene.run(eq), lambda r: r["times"]["steps"])]
-        times[name] = {label: ns for label, _, ns in scenes}
-
-        def contacts(result):
-            if "evaluations" in result:
-                return result["evaluations"] / (result["steps"] * side * side)
-            return result["contacts"] / result["discs"]
-
-        plot = bars(run, name, problem, "ns per disc-step", times[name])
-        text += f"### {problem}\n\n![Time of {problem}]({plot})\n\n" + chain_table(scenes, contacts)
-    return text, times
+        lines += chain_rows(problem, scenes, contacts)
+    return lines
 
 
 def statics(run, eq, side):
@@ -327,36 +270,31 @@ def statics(run, eq, side):
         lines.append([name, f"{found['unknowns'] / discs:.3g}", f"{entries:.0f}" if entries else "none: multigrid",
                       f"{found['factor_bytes'] / discs:.0f}", f"{1e6 * seconds / discs:.3g}", f"{seconds / plain:.2f}",
                       f"{found['relative_residual']:.0e}"])
-    plot = bars(run, "effects_statics", "a solution", "µs per disc", {line[0]: float(line[4]) for line in lines})
-    return (f"## At rest\n\n{side} x {side} discs in tension, solved: time of the whole answer, which holds checks, ordering, factorization, "
-            f"solution and refinement; one thread, {run.options.rounds} rounds.\n\n![Time of a solution]({plot})\n\n" +
-            table(["scene", "unknowns per disc", "entries of the factor per disc", "bytes of the solver per disc", "µs per disc",
-                   "over the plain scene", "relative residual"], lines))
-
-
-def report_of(run, case):
-    """The block of effects in the report of a command."""
-    lines = run.call([run.program, *case.split()]).splitlines()
-    begin = next(k for k, line in enumerate(lines) if line.startswith("effects"))
-    end = next(k for k in range(begin + 1, len(lines)) if not lines[k].startswith(" "))
-    return "\n".join(lines[begin:end])
+    return lines
 
 
 def absent(run, name, *options):
-    text = run.call([run.beside("bench", f"bench_{name}"), "--absent", "--rounds", 3 if run.options.quick else 9, *options])
-    return [table(rows[0], rows[1:]) for rows in tables_of(text)]
+    """Tables of a benchmark of loops beside ones by hand."""
+    return [rows for _, rows in tables_of(run.call([run.beside("bench", f"bench_{name}"), "--absent", "--rounds", 3 if run.options.quick else 9, *options]))]
 
 
-def page(run):
-    eq = run.module()
-    side, case = 20 if run.options.quick else 50, "run data/cases/run_pulse.toml --dry-run"
-    tables, times = in_motion(run, eq, side)
-    text = TEXT.format(command=run.command(), machine=machine_text(run), case=case, report=report_of(run, case), discs=side * side,
-                       pieces=DISC_STEPS, rounds=run.options.rounds)
-    law_c, box_times = times["effects"], times["effects_box"]
-    factor = law_c["+ tangential dashpots"] / law_c["normal contacts, a floor, gravity"]
-    begin, removed = ((box_times[name] / box_times["or one stage"] - 1) * DISC_STEPS / side**2
-                      for name in ("or two stages", "or two stages, a body removed between them"))
-    text += tables + statics(run, eq, 30 if run.options.quick else 150)
-    (bonded_loops,), (flight, bed) = absent(run, "dynamic", "--kinds", "hexagonal"), absent(run, "collisions")
-    return (text + AFTER.format(factor=100 * (factor - 1), begin=begin, removed=removed, bonded=bonded_loops, bed=bed, flight=flight)).rstrip() + "\n"
+def draw(folder):
+    """One figure of bars: the time of a step with each effect."""
+    import figures
+
+    groups = {}
+    for row in rows_of(folder / "scenes.csv"):
+        groups.setdefault(row["problem"], []).append((row["scene"], float(row["ns per disc-step"])))
+    figures.bars(folder / "scenes", groups, "ns per disc and step")
+
+
+def make(run):
+    eq, folder = run.module(), run.data / "effects"
+    write_rows(folder / "scenes.csv", SCENES, in_motion(run, eq, 20 if run.options.quick else 50))
+    write_rows(folder / "statics.csv", STATICS, statics(run, eq, 30 if run.options.quick else 150))
+    loops = dict(zip(("bonded", "flight", "bed"), absent(run, "dynamic", "--kinds", "hexagonal") + absent(run, "collisions")))
+    for name, (head, *rows) in loops.items():
+        write_rows(folder / f"by_hand_{name}.csv", head, rows)
+    found = stamp(run.study("integrators"))
+    write_rows(folder / "measured.csv", list(found), [list(found.values())])
+    draw(folder)
