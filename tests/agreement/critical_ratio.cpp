@@ -63,8 +63,8 @@ TEST_CASE("negative_pivots_are_the_negative_eigenvalues_of_the_dense_matrix") {
   for (const double ratio : {-0.01, -0.05, -0.1, -0.2, -0.3, -0.33, -0.34, -0.36, -0.4, -0.5, -0.7, -0.9}) {
     const Equilibrium state = block.solved(ratio);
     const Signs dense = block.dense_signs(ratio);
-    CAPTURE(ratio, dense.negative, dense.zero, state.negative_pivots.value_or(-1), state.unstable_modes.value_or(-1), state.pivot_growth,
-            state.relative_residual);
+    CAPTURE(ratio, dense.negative, dense.zero, state.negative_pivots.value_or(-1), state.unstable_modes.value_or(-1),
+            state.pivot_growth, state.relative_residual);
     CHECK(dense.zero == 0);
     CHECK(state.negative_pivots == dense.negative);
     CHECK(state.unstable_modes == dense.negative - static_cast<std::int64_t>(block.assembly.size()));

@@ -91,7 +91,8 @@ TEST_CASE("a_millionth_from_the_limit_of_stability_the_answer_is_right_and_beyon
   table.right("homogenize at -1/3 + 1e-6", above, 1e-13);
   const Answer below = homogenize(cell, springs_of(-1.0 / 3 - 1e-6));
   CHECK(below.unstable_modes == 3);
-  table.note("homogenize at -1/3 - 1e-6", "reported unstable", fmt::format("{} unstable modes", below.unstable_modes.value()));
+  table.note("homogenize at -1/3 - 1e-6", "reported unstable",
+             fmt::format("{} unstable modes", below.unstable_modes.value()));
   table.refused("homogenize at -1/3", homogenize(cell, springs_of(-1.0 / 3)), {"limit of stability", "another kT/kN"});
 }
 

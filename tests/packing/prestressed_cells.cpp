@@ -212,7 +212,8 @@ TEST_CASE("frictionless_ellipses_have_moduli_by_their_forces_at_rest_alone") {
   const auto chosen = choose_prestress(assembly, springs, PrestressChoice::automatic);
   const EffectiveStiffness found = effective_stiffness(assembly, chosen->springs);
   const EffectiveModuli moduli = effective_moduli(found.stiffness);
-  CAPTURE(assembly.coordination_number(), moduli.bulk_modulus_2d, moduli.shear_modulus, found.unstable_modes.value_or(-1));
+  CAPTURE(assembly.coordination_number(), moduli.bulk_modulus_2d, moduli.shear_modulus,
+          found.unstable_modes.value_or(-1));
   CHECK(assembly.coordination_number() < 6);
   CHECK(moduli.bulk_modulus_2d > 0.05);
   CHECK(moduli.shear_modulus > 0);

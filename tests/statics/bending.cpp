@@ -301,7 +301,8 @@ TEST_CASE("negative_tangential_springs_beside_bending_have_the_state_and_the_ine
       std::vector<double> found, wanted(x.data(), x.data() + x.size());
       for (const DiscMotion& m : rest.motions) found.insert(found.end(), {m.u.x, m.u.y, m.theta});
       const std::int64_t of_rotations = negative_eigenvalues(D);
-      CAPTURE(kT, width, off_by(found, wanted), rest.unstable_modes.value_or(-1), of_rotations, rest.negative_pivots.value_or(-1));
+      CAPTURE(kT, width, off_by(found, wanted), rest.unstable_modes.value_or(-1), of_rotations,
+              rest.negative_pivots.value_or(-1));
       CHECK(off_by(found, wanted) < 1e-10);
       CHECK(rest.negative_pivots == negative_eigenvalues(K));
       CHECK(rest.unstable_modes == negative_eigenvalues(K) - of_rotations);

@@ -342,7 +342,7 @@ void BreakableSystem::solve_anew() {
   unknowns.rotation_scale = network_.assembly.mean_radius();
   const HeldMotions held = hold_free_motions(rest.assembly, graph, rest.springs, unknowns);
   StiffnessSolver solver(rest.assembly, rest.springs, std::move(graph), std::move(unknowns), network_.solver,
-                               Mechanisms::hold, times);
+                         Mechanisms::hold, times);
   ++report_.factorizations;
   if (was_updated_) ++report_.mended;
   report_.name = solver.solver_name();

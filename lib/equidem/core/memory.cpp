@@ -91,8 +91,8 @@ void require_address_space(double bytes, const std::string& what) {
   const double available = available_address_space();
   if (bytes <= available) return;
   out_of_memory(fmt::format("{} {} of address space", what, readable_bytes(bytes)),
-                     fmt::format("{} are left within the limit of the process", readable_bytes(available)),
-                     "Raise the limit (ulimit -v), use fewer threads or fewer discs");
+                fmt::format("{} are left within the limit of the process", readable_bytes(available)),
+                "Raise the limit (ulimit -v), use fewer threads or fewer discs");
 }
 
 void require_memory(double bytes, const std::string& what, const std::string& remedy, double limit) {
@@ -101,9 +101,9 @@ void require_memory(double bytes, const std::string& what, const std::string& re
   const double available = limit > 0 ? limit : available_memory();
   if (bytes <= available) return;
   out_of_memory(fmt::format("{} {}", what, readable_bytes(bytes)),
-                     fmt::format("{} {}", readable_bytes(available),
-                                 limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
-                     remedy);
+                fmt::format("{} {}", readable_bytes(available),
+                            limit > 0 ? "are allowed by memory_limit" : "of memory are available"),
+                remedy);
 }
 
 }  // namespace equidem

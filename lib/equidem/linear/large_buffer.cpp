@@ -45,8 +45,8 @@ void* allocate_large(std::size_t bytes) {
   const std::size_t size = is_large(bytes) ? whole_pages(bytes) : std::max<std::size_t>(bytes, 1);
   void* memory = is_large(bytes) ? map(size) : std::malloc(size);
   if (memory == nullptr) {
-    out_of_memory(fmt::format("no memory for {}", readable_bytes(static_cast<double>(size))),
-                       "the system refused it", "Use a smaller assembly or a machine with more memory");
+    out_of_memory(fmt::format("no memory for {}", readable_bytes(static_cast<double>(size))), "the system refused it",
+                  "Use a smaller assembly or a machine with more memory");
   }
   return memory;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The linear solvers, their options and what a solution costs.
+/// The linear solvers and their options.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,6 @@
 
 namespace equidem {
 
-struct Assembly;
 struct DegreesOfFreedom;
 struct MatrixOnGraph;
 struct SolverOptions;
@@ -110,24 +109,5 @@ struct SolverOptions {
 /// \throws Error (bad_input) on a negative number of refinements, a memory limit that is negative or no number, or an
 ///         ordering of CHOLMOD beside another method
 void check(const SolverOptions& options);
-
-/// Estimated cost of a solution.
-struct SolveEstimate {
-  SolverMethod method = SolverMethod::multifrontal;
-  std::int64_t unknowns = 0;
-  double factor_nonzeros = 0;  ///< entries of L
-  double factor_bytes = 0;
-  double peak_bytes = 0;  ///< factor and what lives beside it during factorization
-  double operations = 0;  ///< additions and multiplications
-};
-
-/// The cost of a factorization. \param indefinite by L D L^T
-SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
-/// The cost of an iterative method.
-SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
-
-/// \throws Error (out_of_memory) where the estimated peak exceeds `memory_limit` bytes, or what the machine has
-///         where it is 0
-void check_memory(const SolveEstimate& estimate, double memory_limit);
 
 }  // namespace equidem

@@ -162,11 +162,11 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   }
   if (report.others > 0) {
     const auto motion = system.factor->softest_motion();
-    report.sentences.push_back(fmt::format(
-        "{} {}{}", counted(report.others, "motion"),
-        springs.prestressed() ? "that springs and forces at rest together do not resist"
-                              : "in which no contact stretches or slips",
-        motion ? ", such as " + describe_motion(assembly, disc_motions(system.unknowns, *motion)) : ""));
+    report.sentences.push_back(
+        fmt::format("{} {}{}", counted(report.others, "motion"),
+                    springs.prestressed() ? "that springs and forces at rest together do not resist"
+                                          : "in which no contact stretches or slips",
+                    motion ? ", such as " + describe_motion(assembly, disc_motions(system.unknowns, *motion)) : ""));
   }
   if (assembly.periodic() && supports.empty()) {
     const ContactSprings equal(SpringConstants{1, 1});  // contacts without slip carry no load, but join their discs

@@ -37,6 +37,25 @@ struct System {
 /// and are solved for a few load cases: elsewhere elimination is about as fast and finds more, pivots and mechanisms.
 SolverMethod choose_method(const Assembly& assembly, const ContactSprings& springs, const SolverOptions& options);
 
+/// Estimated cost of a solution.
+struct SolveEstimate {
+  SolverMethod method = SolverMethod::multifrontal;
+  std::int64_t unknowns = 0;
+  double factor_nonzeros = 0;  ///< entries of L
+  double factor_bytes = 0;
+  double peak_bytes = 0;  ///< factor and what lives beside it during factorization
+  double operations = 0;  ///< additions and multiplications
+};
+
+/// The cost of a factorization. \param indefinite by L D L^T
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
+/// The cost of an iterative method.
+SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
+
+/// \throws Error (out_of_memory) where the estimated peak exceeds `memory_limit` bytes, or what the machine has
+///         where it is 0
+void check_memory(const SolveEstimate& estimate, double memory_limit);
+
 /// Cholesky where no spring is negative, else L D L^T with delayed pivots, unless the user names a method. A
 /// factorization that breaks down, or whose softest motion costs no energy, means a mechanism.
 /// \throws Error (bad_input) naming the mechanism; (computation_failed) where the chosen method cannot factorize K, or
@@ -49,7 +68,8 @@ std::unique_ptr<Factorization> factorize(const System& system, SolverMethod meth
 [[noreturn]] void report_singular(const System& system, const std::vector<double>& softest);
 
 /// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K (Haynsworth: the
-/// inertia of K is that of this block and of the stiffness with rotations eliminated); none where the block is singular.
+/// inertia of K is that of this block and of the stiffness with rotations eliminated); none where the block is
+/// singular.
 std::optional<std::int64_t> negative_rotations(const System& system);
 
 /// The zero-energy modes of a system beside those that its unknowns hold, one for each of `components`, in which no

@@ -216,11 +216,11 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
   }
   const std::int64_t motions = r.gear_modes + r.mechanisms;
   if (motions > 0) {
-    lines.push_back(fmt::format(
-        "{} without energy ({}, {}){} held: no mean strain drives {}, so the stiffness is the same",
-        counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.mechanisms, "other mode"),
-        motions > std::ssize(described) ? fmt::format(", {} of them named above,", described.size()) : "",
-        motions == 1 ? "it" : "them"));
+    lines.push_back(
+        fmt::format("{} without energy ({}, {}){} held: no mean strain drives {}, so the stiffness is the same",
+                    counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.mechanisms, "other mode"),
+                    motions > std::ssize(described) ? fmt::format(", {} of them named above,", described.size()) : "",
+                    motions == 1 ? "it" : "them"));
   }
   if (r.discs_removed == 0 && motions == 0)
     lines.emplace_back(r.unstable_modes > 0 ? "every disc carries load"

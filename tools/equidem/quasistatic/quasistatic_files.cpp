@@ -67,9 +67,8 @@ struct Count {
   std::int64_t BreakEvent::*member;
 };
 
-const std::vector<Count> count_columns = {{"leg", &BreakEvent::leg},
-                                          {"contact", &BreakEvent::contact},
-                                          {"ties", &BreakEvent::ties}};
+const std::vector<Count> count_columns = {
+    {"leg", &BreakEvent::leg}, {"contact", &BreakEvent::contact}, {"ties", &BreakEvent::ties}};
 
 struct StressColumn {
   std::string name;

@@ -263,7 +263,8 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
       failure = failure_of([&] { results.push_back(solve_case(problem, solver, loads)); });
       if (failure && results.empty()) throw Error(*failure);
       if (!failure) continue;
-      failure = failure->because(fmt::format("{} of {} load cases are done", results.size(), problem.load_cases.size()));
+      failure =
+          failure->because(fmt::format("{} of {} load cases are done", results.size(), problem.load_cases.size()));
       break;
     }
     effects = solver.effects();

@@ -27,8 +27,8 @@ struct PivotWatch {
   std::optional<std::size_t> component{};
 
   void merge(const PivotWatch& other) {
-    const bool less = other.smallest < smallest ||
-                      (other.smallest == smallest && other.component && other.component < component);
+    const bool less =
+        other.smallest < smallest || (other.smallest == smallest && other.component && other.component < component);
     if (less) *this = other;
   }
 };
