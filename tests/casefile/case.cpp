@@ -3,12 +3,19 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
+#include "equidem/casefile/study/study_case.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
 
 #include "example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
@@ -162,19 +169,60 @@ TEST_CASE("every_case_of_the_data_folder_is_valid_and_can_be_built") {
 
 TEST_CASE("the_description_names_every_key_and_its_example_is_valid") {
   const std::string text = describe_case_file();
-  for (const casefile::KeySpec& key : casefile::case_file().spec().keys) {
-    CAPTURE(key.table, key.name);
-    CHECK(text.find("\n  " + key.name + " ") != std::string::npos);
-  }
-  for (const casefile::TableSpec& table : casefile::case_file().spec().tables) {
-    CAPTURE(table.name);
-    CHECK(text.find("[" + table.name + "]") != std::string::npos);
+  std::string words = text;  // "ux, uy" and "damping.mass" are names of keys
+  std::ranges::replace_if(
+      words, [](char c) { return c == ',' || c == '.' || c == '\n'; }, ' ');
+  for (const casefile::FileSpec* spec :
+       {&casefile::case_file().spec(), &casefile::grain_file().spec(), &pack_file_spec(), &study_file_spec()}) {
+    for (const casefile::KeySpec& key : spec->keys) {
+      CAPTURE(key.table, key.name);
+      CHECK(words.find(" " + key.name + " ") != std::string::npos);
+    }
+    for (const casefile::TableSpec& table : spec->tables) {
+      CAPTURE(table.name);
+      CHECK(text.find("[" + table.name + "]") != std::string::npos);
+    }
   }
   const auto begin = text.find("  schema = ");
   const auto end = text.find("Any key can be set");
   REQUIRE(begin != std::string::npos);
   REQUIRE(end != std::string::npos);
   CHECK(error_of(text.substr(begin, end - begin)).empty());
+}
+
+TEST_CASE("the_reference_page_has_each_key_once") {
+  const std::string page = case_file_page();
+  std::set<std::string> headings, rows;
+  std::string heading;
+  for (const std::string_view line : parts_of(page, '\n')) {
+    if (line.starts_with("### ")) CHECK(headings.insert(heading = line).second);
+    if (!line.starts_with("| `")) continue;
+    CAPTURE(heading, line);
+    CHECK(rows.insert(fmt::format("{} {}", heading, line)).second);
+  }
+  CHECK(headings.size() <= 40);
+  CHECK(rows.size() <= 280);
+}
+
+TEST_CASE("a_key_of_another_kind_of_case_is_refused_with_where_it_belongs") {
+  const auto refused = [](const std::string& where, const std::string& kind, const auto& parse) {
+    const std::string sentence = test::refusal_of(parse).message;
+    CAPTURE(sentence);
+    CHECK(sentence.find(where) != std::string::npos);
+    CHECK(sentence.find("(it is for " + kind + ")") != std::string::npos);
+  };
+  const std::string grains = "schema = \"equidem/1\"\n[[grain]]\nposition = [0, 0]\nradius = 1\n[collisions]\n[run]\n";
+  const auto of_grains = [&](const std::string& more) {
+    return [=] { static_cast<void>(parse_grain_case(grains + more, "a.toml", "")); };
+  };
+  refused("a.toml:7: run.until_rest: until_rest does not apply to colliding bodies", "assemblies",
+          of_grains("until_rest = 1e-9"));
+  refused("a.toml:7: viscoelastic: viscoelastic does not apply to colliding bodies", "assemblies",
+          of_grains("[viscoelastic]"));
+  refused("--set springs.shear_wave_speed=1: springs.shear_wave_speed: shear_wave_speed does not apply to assemblies",
+          "packings", [] { parsed(tension_case, {"springs.shear_wave_speed=1"}); });
+  refused("--set measures.cell=1: measures: measures does not apply to assemblies", "colliding bodies",
+          [] { parsed(tension_case, {"measures.cell=1"}); });
 }
 
 TEST_CASE("the_reference_page_is_what_the_program_says") {

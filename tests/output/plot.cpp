@@ -138,16 +138,12 @@ TEST_CASE("series_with_different_x_have_a_row_for_each_point_and_no_cell_is_padd
                   .y = {.label = "nu"},
                   .series = {{.label = "theory", .x = {0, 1}, .y = {0.25, NAN}},
                              {.label = "none"},
-                             {.label = "", .x = {0, 0.5, 1}, .y = {1, 2, 3}, .low = {0, 1, 2}, .high = {2, 3, 4}},
+                             {.label = "", .x = {0, 0.5, 1}, .y = {1, 2, 3}},
                              {.label = "theory", .x = {0}, .y = {4}}}};
   const PlotData data = plot_data(plot);
-  CHECK(data.csv ==
-        "series,kT_kN,nu,low,high\ntheory,0,0.25,,\ntheory,1,nan,,\ny,0,1,0,2\ny,0.5,2,1,3\ny,1,3,2,4\n"
-        "theory_2,0,4,,\n");
+  CHECK(data.csv == "series,kT_kN,nu\ntheory,0,0.25\ntheory,1,nan\ny,0,1\ny,0.5,2\ny,1,3\ntheory_2,0,4\n");
   CHECK((data.places[2].first == 2 && data.places[2].last == 4));
   CHECK(data.places[1].first == 6);  // behind all rows
-  CHECK(data.places[0].low.empty());
-  CHECK(data.places[2].high == "high");
 }
 
 TEST_CASE("gnuplot_draws_each_series_from_its_own_rows") {
@@ -187,26 +183,6 @@ TEST_CASE("gnuplot_draws_each_series_from_its_own_rows") {
     CHECK(x == wanted_x);
     CHECK(y == wanted_y);
   }
-}
-
-TEST_CASE("error_bars_are_data_and_drawn") {
-  const TemporaryFolder folder;
-  const Plot plot{.series = {{.label = "mean",
-                              .x = {1, 2, 3},
-                              .y = {1, 2, 3},
-                              .style = SeriesStyle::points,
-                              .low = {0.5, 1.5, NAN},
-                              .high = {1.5, 9, NAN}}}};
-  const PlotData data = plot_data(plot);
-  CHECK(data.csv == "x,mean,mean_low,mean_high\n1,1,0.5,1.5\n2,2,1.5,9\n3,3,nan,nan\n");
-  const std::string script = plot_script("bars", plot, data);
-  CAPTURE(script);
-  CHECK(script.find("\"mean_low\":\"mean_high\" with yerrorbars") != std::string::npos);
-  CHECK(script.find("set yrange [0:9.6") != std::string::npos);  // the bars fit into the frame
-  const std::string no_picture = write_plot(folder.path(), "bars", plot, false);
-  if (gnuplot_is_missing(no_picture)) return;
-  CAPTURE(no_picture);
-  CHECK(no_picture.empty());
 }
 
 TEST_CASE("an_svg_of_long_histories_stays_small") {
@@ -322,8 +298,5 @@ TEST_CASE("a_plot_that_cannot_be_drawn_is_refused") {
   plot = good;
   plot.x.min = 2, plot.x.max = 1;
   refused("p", plot, "from 2 to 1");
-  plot = good;
-  plot.series[0].low = {0, 1};
-  refused("p", plot, "2 lower ends and 0 upper ends");
   CHECK(folder.files() == 0);
 }

@@ -40,7 +40,8 @@ class Usage(ProgramTest):
             self.assertNotIn("[material]", text)
             self.assertLess(len(text.splitlines()), 60)
         walls = self.check_done(equidem("help", "case", "wall")).stdout
-        self.assertEqual(walls.count("[[wall]]"), 2, walls)
+        self.assertEqual(walls.count("[[wall]]"), 1, walls)
+        self.assertIn("(colliding bodies) false: [shaking]", walls)
         self.check_error(equidem("help", "case", "sprigns"), 2, "no table [sprigns]", "'springs'")
         for words in (("case", "springs", "kT"), ("result", "nu"), ("solve", "x"), ("engines", "x"), ("case", "--markdown", "x")):
             self.check_error(equidem("help", *words), 2, "one argument too many")

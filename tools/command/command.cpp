@@ -168,31 +168,6 @@ std::vector<std::string> overrides_of(const CommonOptions& options) {
   return overrides;
 }
 
-Case read_case(const CommonOptions& options) {
-  prepare(options);
-  Case resolved = read_case(options.case_file, overrides_of(options));
-  check_viscoelastic(resolved, options.verb);
-  check_taken(resolved, options.verb);
-  return resolved;
-}
-
-void check_taken(const Case& resolved, std::string_view verb) {
-  constexpr std::string_view of_prestress[] = {"solve", "homogenize", "stability", "sweep"},
-                             of_bending[] = {"calibrate", "run", "export", "equidem-mpi"};
-  if (std::ranges::find(of_prestress, verb) != std::end(of_prestress)) return;
-  if (resolved.prestress == PrestressChoice::on)
-    bad_input_at(resolved.where("effects.prestress"),
-                 fmt::format("{} takes no prestress, and the case asks for it", verb),
-                 "its answer would be that of the springs alone",
-                 "Remove effects.prestress; solve, homogenize and stability take it");
-  if (!resolved.bending.given() || std::ranges::find(of_bending, verb) != std::end(of_bending)) return;
-  const char* table = resolved.material ? "material" : "springs";
-  bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
-               fmt::format("{} takes no bending springs, and the case gives some", verb),
-               "its answer would be that of contacts without moments",
-               "Remove it; solve, homogenize, calibrate, stability, run, export and equidem-mpi take it");
-}
-
 std::vector<std::string> plot_files(const std::string& name) {
   return {name + ".csv", name + ".gp", name + ".svg", name + ".png"};
 }

@@ -95,12 +95,6 @@ void add_require_stable(CLI::App& command, CommonOptions& options);
 void prepare(const CommonOptions& options);
 /// --set, and --seed as an assignment of its key.
 std::vector<std::string> overrides_of(const CommonOptions& options);
-/// Apply threads and quiet, and read the case with its overrides.
-Case read_case(const CommonOptions& options);
-/// \throws Error (bad_input), with the line of the case file, where prestress is asked for or bonds resist bending and
-///         the verb takes neither
-void check_taken(const Case& resolved, std::string_view verb);
-
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case
 template <typename Resolved>

@@ -17,6 +17,19 @@ namespace equidem {
 /// Runs a command after its options are read; returns the exit code.
 using Run = std::function<int()>;
 
+/// What a command takes of the effects that a case may ask for; it refuses a case with another one.
+struct Takes {
+  enum class Viscoelastic {
+    none,
+    at_rest,  ///< of springs that have an equilibrium
+    moving,   ///< with dashpots beside springs
+    all,      ///< by the frequency
+  };
+  bool prestress = false, bending = false;
+  Viscoelastic viscoelastic = Viscoelastic::none;
+  bool of_another = false;  ///< the command that it carries out checks it
+};
+
 /// A command is one file with one declare function, and one line in the list of its program.
 struct Verb {
   const char* name;
@@ -24,6 +37,7 @@ struct Verb {
   Run (*declare)(CLI::App& command);  ///< adds its options to the command line
   bool swept = false;                 ///< gives numbers of a case whose keys a sweep may vary
   const char* footer = "";            ///< below its options: examples; without its last line break
+  Takes takes = {};
 };
 
 /// An option or command that is not accepted, with the message for it.

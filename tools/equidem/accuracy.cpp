@@ -12,6 +12,7 @@
 #include "equidem/study/evaluate.hpp"
 
 #include "problem.hpp"
+#include "verbs.hpp"
 
 namespace equidem {
 namespace {

@@ -5,6 +5,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
+#include "equidem/core/names.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -24,7 +26,62 @@ std::string command_of(const std::string& verb, const std::filesystem::path& cas
   return shell_words(words);
 }
 
+/// "solve, homogenize and stability take it". \param has whether a verb does
+std::string takers(const std::function<bool(const Takes&)>& has) {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs)
+    if (has(verb.takes)) names.emplace_back(verb.name);
+  return listed(names) + " take it";
+}
+
+void check_viscoelastic(const Case& resolved, std::string_view taker, Takes::Viscoelastic takes) {
+  using enum Takes::Viscoelastic;
+  if (!resolved.viscoelastic || takes == all) return;
+  const auto refuse = [&](const std::string& problem, const char* why, const std::string& remedy) {
+    bad_input_at(resolved.where("viscoelastic"), problem, why, remedy);
+  };
+  if (takes == none)
+    refuse(fmt::format("{} takes elastic springs, and the case gives [viscoelastic]", taker),
+           "its answer would be that of other springs",
+           "Remove [viscoelastic]; " + takers([](const Takes& other) { return other.viscoelastic != none; }));
+  const Viscoelasticity& springs = resolved.viscoelastic->springs;
+  for (const SpringModel model : {SpringModel::maxwell, SpringModel::standard_solid, SpringModel::table}) {
+    if (springs.normal.model != model && springs.tangential.model != model) continue;
+    if (takes == moving)
+      refuse(fmt::format("a run has no springs of the model \"{}\"", to_string(model)),
+             "its contacts are springs with dashpots beside them, Kelvin-Voigt",
+             "Use kelvin_voigt, or 'equidem homogenize' for complex moduli");
+    if (model == SpringModel::maxwell)
+      refuse("a Maxwell spring has no equilibrium", "its dashpot flows as long as it carries a force",
+             "Use 'equidem homogenize', which gives complex moduli, or another model");
+    if (model == SpringModel::table)
+      refuse("a table of springs over frequency has no equilibrium", "its stiffness at rest is not known",
+             "Use 'equidem homogenize', or remove [viscoelastic] to solve with elastic springs");
+  }
+}
+
 }  // namespace
+
+Case read_case(const CommonOptions& options) {
+  prepare(options);
+  Case resolved = read_case(options.case_file, overrides_of(options));
+  check_taken(resolved, options.verb, entry_named(verbs, options.verb, "verb").takes);
+  return resolved;
+}
+
+void check_taken(const Case& resolved, std::string_view taker, const Takes& takes) {
+  if (takes.of_another) return;
+  check_viscoelastic(resolved, taker, takes.viscoelastic);
+  if (resolved.prestress == PrestressChoice::on && !takes.prestress)
+    bad_input_at(
+        resolved.where("effects.prestress"), fmt::format("{} takes no prestress, and the case asks for it", taker),
+        "its answer would be that of the springs alone", "Remove effects.prestress; " + takers(&Takes::prestress));
+  if (!resolved.bending.given() || takes.bending) return;
+  const char* table = resolved.material ? "material" : "springs";
+  bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
+               fmt::format("{} takes no bending springs, and the case gives some", taker),
+               "its answer would be that of contacts without moments", "Remove it; " + takers(&Takes::bending));
+}
 
 VerbRun::VerbRun(const std::string& verb, const std::filesystem::path& case_file,
                  const std::vector<std::string>& overrides, const std::vector<std::string>& options) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -55,25 +56,64 @@ Run declare_export(CLI::App& command);
 Run declare_sweep(CLI::App& command);
 Run declare_study(CLI::App& command);
 
+/// Apply threads and quiet, and read the case with its overrides.
+/// \throws Error (bad_input) as read_case and check_taken
+Case read_case(const CommonOptions& options);
+
+/// \param taker of the case
+/// \throws Error (bad_input), with the line of the case file, where the case asks for an effect that the taker does
+///         not take
+void check_taken(const Case& resolved, std::string_view taker, const Takes& takes);
+
 /// Names of the options of all verbs that take no value, without hyphens in front.
 std::set<std::string> flags_of_verbs();
 
 inline constexpr std::array verbs{
-    Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve, true, solve_txt},
-    Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize, true,
-         homogenize_txt},
-    Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate, true,
-         calibrate_txt},
-    Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability, true,
-         stability_txt},
+    Verb{"solve",
+         "equilibrium under supports and loads, or Abe's tension test",
+         declare_solve,
+         true,
+         solve_txt,
+         {.prestress = true, .bending = true, .viscoelastic = Takes::Viscoelastic::at_rest}},
+    Verb{"homogenize",
+         "effective stiffness and moduli of an assembly, with bounds",
+         declare_homogenize,
+         true,
+         homogenize_txt,
+         {.prestress = true, .bending = true, .viscoelastic = Takes::Viscoelastic::all}},
+    Verb{"calibrate",
+         "wanted moduli -> springs, as a file that every other verb accepts",
+         declare_calibrate,
+         true,
+         calibrate_txt,
+         {.bending = true}},
+    Verb{"stability",
+         "mechanisms, waves, critical kT/kN, highest frequency and time step",
+         declare_stability,
+         true,
+         stability_txt,
+         {.prestress = true, .bending = true}},
     Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack, true, pack_txt},
-    Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run, true,
-         run_txt},
+    Verb{"run",
+         "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide",
+         declare_run,
+         true,
+         run_txt,
+         {.bending = true, .viscoelastic = Takes::Viscoelastic::moving}},
     Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic, true,
          quasistatic_txt},
-    Verb{"export", "the model as input of LAMMPS or YADE, or its equations as matrices", declare_export, false,
-         export_txt},
-    Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep, false, sweep_txt},
+    Verb{"export",
+         "the model as input of LAMMPS or YADE, or its equations as matrices",
+         declare_export,
+         false,
+         export_txt,
+         {.bending = true}},
+    Verb{"sweep",
+         "a verb over values of keys and seeds: one table, and curves",
+         declare_sweep,
+         false,
+         sweep_txt,
+         {.of_another = true}},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study,
          false, study_txt},
 };

@@ -32,6 +32,7 @@
 #include "petsc/statics.hpp"
 #include "problem.hpp"
 #include "solve/solve.hpp"
+#include "verbs.hpp"
 
 namespace equidem {
 namespace {
@@ -270,8 +271,7 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
       bad_input("equidem-mpi has no --dry-run", "what it takes is planned by hand",
                 "See data/petsc.md, or leave it out");
     Case resolved = read_case(options);
-    check_viscoelastic(resolved, "equidem-mpi");
-    check_taken(resolved, "equidem-mpi");
+    check_taken(resolved, "equidem-mpi", {.bending = true});
     made = std::make_unique<PartProblem>(std::move(resolved));
     check_case(made->problem.resolved, homogenize);
   });

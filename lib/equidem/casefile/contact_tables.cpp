@@ -24,12 +24,12 @@ std::string schema_of(const std::string& table) {
 }
 
 template <class T>
-void resolve_table_file(TomlValue& root, const std::string& table, const char* help, const std::vector<Key<T>>& keys,
+void resolve_table_file(TomlValue& root, const std::string& table, CaseKind kind, const std::vector<Key<T>>& keys,
                         const std::filesystem::path& folder) {
   TomlValue* named = root.find(table);
   if (named == nullptr || named->type != TomlValue::Type::text) return;
-  File<TableFile<T>> format(schema_of(table), table + " file");
-  format.table(table, &TableFile<T>::table, required, help).keys(keys);
+  File<TableFile<T>> format(schema_of(table), table + " file", kind);
+  format.table(table, &TableFile<T>::table, required, table + " of contacts").keys(keys);
   const std::filesystem::path path = opened(named->text, folder);
   TomlValue document = with_place(fmt::format("{}: {}", named->where(), table),
                                   [&] { return parse_toml(read_file(path), path.string()); });
@@ -52,32 +52,44 @@ std::string head_of_file(const std::string& table, const std::string& title, con
 
 }  // namespace
 
-std::vector<Key<SpringsTable>> springs_keys(bool with_bending) {
+std::vector<Key<SpringsTable>> springs_keys() {
   using S = SpringsTable;
   using B = BendingOptions;
-  std::vector<Key<S>> keys{
-      key("kN", &S::constants, &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
-      key("kT", &S::constants, &SpringConstants::kT, required, unit("Pa"),
+  const std::string how_stiff =
+      "two numbers say how stiff contacts are: kN and kT, or shear_wave_speed and poisson_ratio";
+  const auto of_packings = only_in({CaseKind::packing}), of_assemblies = only_in({CaseKind::assembly});
+  return {
+      key("kN", &S::constants, &SpringConstants::kN, or_instead({"shear_wave_speed"}, how_stiff), unit("Pa"), positive,
+          "normal spring"),
+      key("kT", &S::constants, &SpringConstants::kT, or_instead({"shear_wave_speed"}, how_stiff), unit("Pa"),
           "tangential spring; 0: none; negative: a static answer exists for small ones only"),
+      key("shear_wave_speed", &S::shear_wave_speed, of_packings, unit("m/s"), positive,
+          only_with({"poisson_ratio"}, how_stiff), "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
+      key("poisson_ratio", &S::poisson_ratio, of_packings, between(-1, 0.5), only_with({"shear_wave_speed"}, how_stiff),
+          "plane strain; with shear_wave_speed"),
       key("weighting", &S::weighting,
           "uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); "
           "local_contact_density: psi of the two discs of the contact alone; voronoi: k h/l, shared cell edge over "
-          "centre distance"),
+          "centre distance. Bodies of a packing fall on uniform ones, and with others its assembly has no springs"),
       key("density", &S::density, unit("kg/m³"), positive,
-          "density of the discs that these springs are for; calibrate writes it into a springs file")};
-  if (!with_bending) return keys;
-  keys.push_back(key("kM", &S::bending, &B::kM, unit("N"), not_negative,
-                     not_beside({"bond_width"}, "each says how stiff contacts are in bending"),
-                     "bending spring of every contact, N m/rad per metre of depth: the moment by the rotation of one "
-                     "disc against the other; left out: contacts carry no moments"));
-  keys.push_back(key("bond_width", &S::bending, &B::bond_width, not_negative,
-                     "width w of a bond over the diameter of its smaller disc: contacts have kM = kN w²/12, the "
-                     "bending stiffness of a parallel bond"));
-  return keys;
+          "density of the discs that these springs are for; calibrate writes it into a springs file"),
+      key("kM", &S::bending, &B::kM, of_assemblies, unit("N"), not_negative,
+          not_beside({"bond_width"}, "each says how stiff contacts are in bending"),
+          "bending spring of every contact, N m/rad per metre of depth: the moment by the rotation of one disc against "
+          "the other; left out: contacts carry no moments"),
+      key("bond_width", &S::bending, &B::bond_width, of_assemblies, not_negative,
+          "width w of a bond over the diameter of its smaller disc: contacts have kM = kN w²/12, the bending stiffness "
+          "of a parallel bond")};
 }
 
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder) {
-  resolve_table_file(root, "springs", "the springs of a contact", springs_keys(true), folder);
+  resolve_table_file(root, "springs", CaseKind::assembly, springs_keys(), folder);
+}
+
+void check_stable_in_motion(const TomlValue& root, const SpringConstants& springs) {
+  if (springs.kT < 0)
+    fail_at(*root.find("springs")->find("kT"), fmt::format("kT = {:.6g} Pa is negative", springs.kT),
+            "no motion of the discs is stable with it", "Give springs with kT of 0 or more");
 }
 
 std::optional<double> one_density(const TomlValue& root, std::initializer_list<StatedDensity> stated) {
@@ -89,7 +101,7 @@ std::optional<double> one_density(const TomlValue& root, std::initializer_list<S
       first = &other;
     } else if (std::abs(*other.value - *first->value) > tolerance * *first->value) {
       fail_at(
-          *root.find(other.table)->find("density"), fmt::format("{}.density", other.table),
+          *root.find(other.table)->find("density"),
           fmt::format("it is {:.9g} kg/m³ here and {:.9g} kg/m³ in [{}]", *other.value, *first->value, first->table),
           "both are the density of the discs themselves", "Remove one of them");
     }
@@ -97,24 +109,29 @@ std::optional<double> one_density(const TomlValue& root, std::initializer_list<S
   return first != nullptr ? first->value : std::nullopt;
 }
 
-std::vector<Key<StrengthOptions>> strength_keys() {
+std::vector<Key<StrengthOptions>> strength_keys(CaseKind kind) {
   using S = StrengthOptions;
+  const auto of_assemblies = only_in({CaseKind::assembly});
+  std::vector<std::string> lengths = names_of<BondLength>();
+  if (kind == CaseKind::colliding) std::erase(lengths, to_string(BondLength::facet));
   return {key("tension", &S::tension, unit("N/m (with bond_length: Pa)"), not_negative,
-              "a contact breaks where its normal force reaches it; left out: the assembly gives strengths"),
+              "a contact breaks where its normal force reaches it, of a bond of colliding bodies with what its moment "
+              "adds at the outer fibre; left out: the assembly gives strengths"),
           key("shear", &S::shear, unit("N/m (with bond_length: Pa)"), not_negative,
               "a contact breaks where |T| reaches shear - friction N, N positive in tension"),
           key("friction", &S::friction, not_negative, "by how much compression adds to the strength in shear"),
-          key("bond_length", &S::bond_length,
+          key("bond_length", &S::bond_length, choices(lengths),
               "the length by which strengths in Pa are multiplied: the edge that the cells of both discs share, or "
               "the diameter of the smaller disc; none: strengths are forces"),
           key("weibull_modulus", &S::weibull_modulus, positive,
               "m: a share exp(-x^m) of the contacts is more than x times as strong as given; left out: all are "
               "equal"),
           key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths"),
-          key("after_breaking", &S::after_breaking,
+          key("after_breaking", &S::after_breaking, of_assemblies,
               "gone: a broken contact carries nothing; frictional: it opens, closes, sticks and slips. Contacts whose "
               "strengths are both 0 are then no bonds from the start"),
-          key("residual_friction", &S::residual_friction, not_negative, when("after_breaking", {"frictional"}),
+          key("residual_friction", &S::residual_friction, of_assemblies, not_negative,
+              when("after_breaking", {"frictional"}),
               "coefficient of friction of contacts without a bond, where they are frictional; left out: friction")};
 }
 
@@ -144,9 +161,8 @@ std::vector<Key<StrengthTargetCase>> strength_target_keys() {
           "a test is over where the load has fallen to this share of its peak")};
 }
 
-void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder,
-                           const std::vector<Key<StrengthOptions>>& keys) {
-  resolve_table_file(root, "strength", "strengths of the contacts", keys, folder);
+void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder, CaseKind kind) {
+  resolve_table_file(root, "strength", kind, strength_keys(kind), folder);
 }
 
 void check_strength_target(const TomlValue& root) {
@@ -156,17 +172,17 @@ void check_strength_target(const TomlValue& root) {
   if (strength == nullptr) return;
   for (const char* name : {"tension", "shear"}) {
     if (const TomlValue* given = strength->find(name); given != nullptr)
-      fail_at(*given, fmt::format("strength.{}", name), "it is given beside [strength_target]",
+      fail_at(*given, "it is given beside [strength_target]",
               "calibrate looks for it; friction, bond_length and weibull_modulus of [strength] are kept",
               "Remove one of them");
   }
   // The default, 0, is in the case that a calibration writes.
   const TomlValue* friction = strength->find("friction");
   if (friction != nullptr && friction->real != 0 && target->find("shear_over_tension") != nullptr)
-    fail_at(*friction, "strength.friction", "it is given beside strength_target.shear_over_tension",
+    fail_at(*friction, "it is given beside strength_target.shear_over_tension",
             "calibrate looks for the friction where f_s/f_t is given", "Remove one of them");
   if (const TomlValue* given = strength->find("after_breaking"); given != nullptr && given->text == "frictional")
-    fail_at(*given, "strength.after_breaking", "\"frictional\" is given beside [strength_target]",
+    fail_at(*given, "\"frictional\" is given beside [strength_target]",
             "calibrate finds strengths of contacts that carry nothing once they are broken", "Remove it");
 }
 

@@ -46,24 +46,39 @@ namespace equidem::casefile {
 
 /// Binds `TABLE = "FILE"` at the top of a case file.
 template <class F>
-void bind_table_file(File<F>& file, const std::string& table) {
+void bind_table_file(File<F>& file, const char* table) {
   file.table("").keys({unbound_key<F>(
       table, KeyType::path, fmt::format("a {0} file, as calibrate writes it, in place of the table [{0}]", table))});
 }
 
+/// [springs]. Of a packing kN and kT, or the other two.
 struct SpringsTable {
-  SpringConstants constants;  ///< Pa, before weighting
+  SpringConstants constants;                              ///< Pa, before weighting
+  std::optional<double> shear_wave_speed, poisson_ratio;  ///< m/s, -
   SpringWeighting weighting = SpringWeighting::uniform;
   std::optional<double> density;  ///< kg/m³, of the discs that these springs are for
   BendingOptions bending;
 };
 
-/// \param with_bending the keys of bonds, too, which colliding bodies have not
-std::vector<Key<SpringsTable>> springs_keys(bool with_bending);
+std::vector<Key<SpringsTable>> springs_keys();
+
+/// Binds [springs], and the name of a file in its place.
+template <class F, class... Arguments>
+void bind_springs(File<F>& file, Arguments... arguments) {
+  bind_table_file(file, "springs");
+  file.table(
+          "springs", arguments...,
+          "the springs of a contact; of colliding bodies those of all contacts, with walls too, instead of stiffness "
+          "and tangential_ratio")
+      .keys(springs_keys());
+}
 
 /// The table of a springs file takes the place of its name.
 /// \throws Error (bad_input) with file, line and key: a file that cannot be read, or is of another format
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder);
+
+/// \throws Error (bad_input) with the line of [springs]: a negative kT, with which no motion is stable
+void check_stable_in_motion(const TomlValue& root, const SpringConstants& springs);
 
 /// Density of the discs as one table states it.
 struct StatedDensity {
@@ -75,14 +90,24 @@ struct StatedDensity {
 /// \throws Error (bad_input) where two of them differ by more than 1e-6
 std::optional<double> one_density(const TomlValue& root, std::initializer_list<StatedDensity> stated);
 
-std::vector<Key<StrengthOptions>> strength_keys();
+/// \param kind of the case: without a bond colliding bodies are always frictional, and have no facets
+std::vector<Key<StrengthOptions>> strength_keys(CaseKind kind);
 std::vector<Key<StrengthTargetCase>> strength_target_keys();
 
+/// Binds [strength], and the name of a file in its place.
+template <class F, class Link>
+void bind_strength(File<F>& file, Link strength) {
+  bind_table_file(file, "strength");
+  file.table("strength", strength,
+             "strengths of the contacts, for quasistatic and calibrate, or of the bonds of colliding bodies, which "
+             "without them never break")
+      .keys(strength_keys(file.spec().kind));
+}
+
 /// The table of a strength file takes the place of its name.
-/// \param keys that it may have
+/// \param kind of the case, whose keys the file may have
 /// \throws Error (bad_input) as resolve_springs_file
-void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder,
-                           const std::vector<Key<StrengthOptions>>& keys = strength_keys());
+void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder, CaseKind kind);
 
 /// \throws Error (bad_input) with the line: strengths of contacts beside [strength_target], which asks for them
 void check_strength_target(const TomlValue& root);

@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
+#include "equidem/dynamics/simulation.hpp"
+#include "equidem/dynamics/time_step.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/saved_state.hpp"
 #include "equidem/motion/schedule.hpp"
@@ -33,10 +36,9 @@ std::vector<Key<ServoTable>> servo_keys();
 
 /// The servo of a wall, if its table has one.
 /// \param table checked, of the wall
-/// \param path of the table, for errors: "wall"
 /// \throws Error (bad_input) with line and key: a direction of length 0 or that is missing, a stress without a length,
 ///         a schedule that is not there, as check(Servo)
-void read_servo(const TomlValue& table, const std::string& path, std::span<const NamedSchedule> schedules, Wall& wall);
+void read_servo(const TomlValue& table, std::span<const NamedSchedule> schedules, Wall& wall);
 
 /// [[schedule]]: a name for a schedule, whose points may be in a file.
 struct ScheduleTable {
@@ -59,29 +61,42 @@ struct MotionTables {
   std::vector<WallTable> wall_tables;
 };
 
-/// Attributes of the keys of [run] that both families have: length, step, gravity.
-void run_duration(KeySpec& key);
-void run_time_step(KeySpec& key);
-void run_gravity(KeySpec& key);
+/// [run], less the damping of bonded discs.
+struct RunTable {
+  std::optional<double> duration;    ///< s; of assemblies this or until_rest
+  std::optional<double> until_rest;  ///< unbalanced force, relative
+  TimeStepOptions time_step;
+  std::optional<double> steps_per_contact;
+  Integrator integrator = SimulationOptions{}.integrator;
+  GrainOptions::Integrator integrator_of_forces = GrainOptions{}.integrator;  ///< colliding bodies
+  LoopKind::Motion motion = SimulationOptions{}.motion;
+  Vec2 gravity;  ///< m/s²
+};
 
+std::vector<Key<RunTable>> run_keys();
 std::vector<Key<ScheduleTable>> schedule_keys();
 /// Bonded discs meet lines with a spring kN; colliding bodies meet all shapes, which may be shaken.
-std::vector<Key<WallTable>> wall_keys(BodyFamily family);
-/// Both families have the same keys; the quantities are those of the family, the first is the default.
-std::vector<Key<Probe>> probe_keys(BodyFamily family);
+std::vector<Key<WallTable>> wall_keys();
+/// \param kind of the case: the quantities are those of its bodies, the first is the default
+std::vector<Key<Probe>> probe_keys(CaseKind kind);
 
-/// Bind [[schedule]], [[wall]] and [[probe]] in a file of an F that is a MotionTables.
-/// \param probes chain of members to a std::vector of Probe
-template <class F, class... Links>
-void bind_motion(File<F>& file, BodyFamily family, Links... probes) {
+/// Bind [run], [[schedule]], [[wall]] and [[probe]] in a file of an F that is a MotionTables.
+/// \param run pointer to the member that is a RunTable; \param probes chain of members to a std::vector of Probe
+template <class F, class Run, class... Links>
+void bind_motion(File<F>& file, Run run, Links... probes) {
+  const CaseKind kind = file.spec().kind;
+  file.table(
+          "run", run, [=](TableSpec& table) { table.required = kind == CaseKind::colliding; },
+          "motion in time, for the verb run")
+      .keys(run_keys());
   file.table("schedule", &MotionTables::schedule_tables,
              "how a motion or load changes in a run; without one it acts from the start")
       .keys(schedule_keys());
-  file.table("wall", &MotionTables::wall_tables, "a wall of infinite mass, in a run").keys(wall_keys(family));
-  if (family == BodyFamily::colliding)
+  file.table("wall", &MotionTables::wall_tables, "a wall of infinite mass, in a run").keys(wall_keys());
+  if (kind == CaseKind::colliding)
     file.table("wall.servo", "the wall moves so that it pushes the bodies with a wanted force or stress")
         .described(servo_keys());
-  file.table("probe", probes..., "a history of some bodies in a run").keys(probe_keys(family));
+  file.table("probe", probes..., "a history of some bodies in a run").keys(probe_keys(kind));
 }
 
 /// The schedules of a document, checked, with the points of their files.
@@ -91,10 +106,8 @@ void bind_motion(File<F>& file, BodyFamily family, Links... probes) {
 std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables);
 
 /// `value` times the schedule that the table names; constant if it names none.
-/// \param key of the table, for errors: "load"
 /// \throws Error (bad_input) if there is no schedule of that name
-Schedule scheduled(const TomlValue& table, const std::string& key, double value,
-                   std::span<const NamedSchedule> schedules);
+Schedule scheduled(const TomlValue& table, double value, std::span<const NamedSchedule> schedules);
 
 /// The walls of a document with their motion.
 /// \throws Error (bad_input) with line and key: two walls of one name, a normal or direction of length 0, a segment
@@ -103,13 +116,10 @@ std::vector<Wall> read_walls(const TomlValue& root, const std::vector<WallTable>
                              std::span<const NamedSchedule> schedules);
 
 /// One wall of a table with its motion by a displacement.
-/// \param path of the table, for errors: "wall"
 /// \throws Error (bad_input) as read_walls
-Wall wall_of(const TomlValue& table, const std::string& path, const WallTable& read,
-             std::span<const NamedSchedule> schedules);
+Wall wall_of(const TomlValue& table, const WallTable& read, std::span<const NamedSchedule> schedules);
 /// Set the displacement of a wall; nothing where the table has none.
-void set_motion(const TomlValue& table, const std::string& path, const WallTable& read,
-                std::span<const NamedSchedule> schedules, Wall& wall);
+void set_motion(const TomlValue& table, const WallTable& read, std::span<const NamedSchedule> schedules, Wall& wall);
 
 /// Check the names of the probes of a document.
 /// \throws Error (bad_input) with line and key: two probes of one name, a name that is not plain

@@ -131,7 +131,7 @@ class Factor {
     const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
     const LongWork working;
     Case resolved = read_case(inputs.case_file(), inputs.overrides());
-    check_viscoelastic(resolved, "solve");
+    check_taken(resolved, "factorize", entry_named(verbs, "solve", "verb").takes);
     problem_.emplace(prestressed(problem_of(std::move(resolved))));
     EquilibriumOptions options = problem_->options();
     options.error_bound = error_bound;

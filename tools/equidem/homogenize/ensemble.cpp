@@ -25,6 +25,7 @@
 
 #include "accuracy.hpp"
 #include "problem.hpp"
+#include "verbs.hpp"
 
 namespace equidem {
 namespace {

@@ -298,7 +298,7 @@ std::vector<OutputPart> output_parts(const std::shared_ptr<const PackCase>& reso
 /// Adds the line of the key at fault to the errors of a task. \param usual the key of an error that names none
 template <typename Task>
 auto located(const PackCase& resolved, const char* usual, const Task& task) {
-  return casefile::at_key(*resolved.document.find("packing"), "packing", task, usual);
+  return casefile::at_key(*resolved.document.find("packing"), task, usual);
 }
 
 /// In the region of the case; if no body has come into it that is noted in the packing, which stays.

@@ -31,7 +31,7 @@ Assembly generate(const Case& resolved) {
       return delaunay_assembly(wanted.delaunay);
     case AssemblyKind::packing: {
       const GrainPacking packing = at_key(
-          *resolved.document.find("packing"), "packing", [&] { return pack(*wanted.packing); }, "method");
+          *resolved.document.find("packing"), [&] { return pack(*wanted.packing); }, "method");
       Assembly assembly = network_of(packing, {.gap_tolerance = wanted.gap_tolerance});
       if (!assembly.contacts.empty()) measure_cells(assembly);
       return assembly;

@@ -58,20 +58,22 @@ std::vector<Key<ViscoelasticCase>> viscoelastic_keys() {
   using L = Viscoelasticity;
   using S = ViscoelasticSpring;
   const std::vector<std::string> timed = {"kelvin_voigt", "maxwell", "standard_solid"}, armed = {"standard_solid"};
+  const std::string
+      model =
+          "kN and kT of every contact at rest or at once; elastic; kelvin_voigt: a dashpot beside it, k (1 + i x) "
+          "with x = 2 pi f tau; maxwell: a dashpot behind it, k i x/(1 + i x); standard_solid: a Maxwell arm beside "
+          "it, k (1 + arm i x/(1 + i x)); table: by path",
+      tau = "viscosity of the dashpot over the stiffness of its spring (of the arm: over that of the arm)",
+      arm = "spring of the Maxwell arm over kN, over kT",
+      range_of_frequencies = "frequencies between these, evenly spaced over their logarithm";
   return {
-      key("normal", &V::springs, &L::normal, &S::model,
-          "kN of every contact at rest or at once; elastic; kelvin_voigt: a dashpot beside it, kN (1 + i x) with x = 2 "
-          "pi f tauN; maxwell: a dashpot behind it, kN i x/(1 + i x); standard_solid: a Maxwell arm beside it, kN (1 + "
-          "armN i x/(1 + i x)); table: by path"),
-      key("tangential", &V::springs, &L::tangential, &S::model, "kT of every contact, likewise"),
-      key("tauN", &V::springs, &L::normal, &S::time, required, unit("s"), not_negative, when("normal", timed),
-          "viscosity of the dashpot over the stiffness of its spring (of the arm: over that of the arm)"),
+      key("normal", &V::springs, &L::normal, &S::model, model),
+      key("tangential", &V::springs, &L::tangential, &S::model, model),
+      key("tauN", &V::springs, &L::normal, &S::time, required, unit("s"), not_negative, when("normal", timed), tau),
       key("tauT", &V::springs, &L::tangential, &S::time, required, unit("s"), not_negative, when("tangential", timed),
-          "as tauN, of the tangential spring"),
-      key("armN", &V::springs, &L::normal, &S::arm, positive, when("normal", armed),
-          "spring of the Maxwell arm over kN"),
-      key("armT", &V::springs, &L::tangential, &S::arm, positive, when("tangential", armed),
-          "spring of the Maxwell arm over kT"),
+          tau),
+      key("armN", &V::springs, &L::normal, &S::arm, positive, when("normal", armed), arm),
+      key("armT", &V::springs, &L::tangential, &S::arm, positive, when("tangential", armed), arm),
       key("path", &V::path,
           fmt::format("a CSV file with the columns {}, Hz and Pa, of a contact with the kN and kT of the case; others "
                       "are scaled as their elastic springs are",
@@ -79,9 +81,9 @@ std::vector<Key<ViscoelasticCase>> viscoelastic_keys() {
       key("frequencies", &V::frequencies, unit("Hz"), not_beside({"lowest"}, "each says which frequencies to take"),
           "of complex moduli; left out: 3 decades either side of 1/(2 pi tau), or those of the table"),
       key("lowest", &V::lowest, unit("Hz"), positive, only_with({"highest"}, "a range has two ends"),
-          "frequencies from here"),
+          range_of_frequencies),
       key("highest", &V::highest, unit("Hz"), positive, only_with({"lowest"}, "a range has two ends"),
-          "to here, evenly spaced over their logarithm"),
+          range_of_frequencies),
       key("per_decade", &V::per_decade, from(1, 100), "frequencies in a decade")};
 }
 
@@ -89,23 +91,24 @@ void complete_viscoelastic(const TomlValue& root, ViscoelasticCase& viscoelastic
   const TomlValue& table = *root.find("viscoelastic");
   const Viscoelasticity& springs = viscoelastic.springs;
   if (springs.normal.model == SpringModel::elastic && springs.tangential.model == SpringModel::elastic) {
-    fail_at(table, "viscoelastic", "both springs are elastic", "[viscoelastic] would change nothing",
+    fail_at(table, "both springs are elastic", "[viscoelastic] would change nothing",
             "Choose a model for normal or tangential, or remove the table");
   }
   const bool tabulated = (springs.normal.model == SpringModel::table || springs.tangential.model == SpringModel::table);
   if (tabulated && !viscoelastic.path) {
-    fail_at(table, "viscoelastic.path", "the table of springs is missing", "the model \"table\" reads them there",
+    fail_at(table, "path", "the table of springs is missing", "the model \"table\" reads them there",
             "Add path = \"FILE.csv\"");
   }
   if (!tabulated && viscoelastic.path) {
-    fail_at(*table.find("path"), "viscoelastic.path", "no spring is read from the table",
-            "neither normal nor tangential is \"table\"", "Set one of them, or remove path");
+    fail_at(*table.find("path"), "no spring is read from the table", "neither normal nor tangential is \"table\"",
+            "Set one of them, or remove path");
   }
-  if (viscoelastic.path)
-    with_key(table, "viscoelastic", "path", [&] { viscoelastic.rows = read_spring_table(*viscoelastic.path); });
+  if (viscoelastic.path) with_key(table, "path", [&] { viscoelastic.rows = read_spring_table(*viscoelastic.path); });
 }
 
 using Words = std::vector<std::string>;
+
+constexpr const char* uniform_radii = "radii are uniform between the two";
 
 void bind_assembly(File<CaseTables>& file) {
   const Words lattices = names_in(all_lattices()), delaunay = {"delaunay"}, from_file = {"file"};
@@ -199,15 +202,15 @@ void bind_assembly(File<CaseTables>& file) {
                "true: springs that the file gives are used; false: those of the case, or of calibrate")});
   file.table("assembly.radii", &CaseTables::assembly, &A::delaunay, &D::radii, when("kind", delaunay),
              "discs of different sizes, instead of radius")
-      .keys({key("smallest", &RadiusDistribution::smallest, required, unit("m"), positive),
-             key("largest", &RadiusDistribution::largest, required, unit("m"), positive,
-                 "radii are uniform between the two")});
+      .keys({key("smallest", &RadiusDistribution::smallest, required, unit("m"), positive, uniform_radii),
+             key("largest", &RadiusDistribution::largest, required, unit("m"), positive, uniform_radii)});
   bind_packing(file, &CaseTables::packing_tables, when("assembly.kind", {"packing"}));
 }
 
 void bind_material(File<CaseTables>& file) {
   using T = MaterialCase;
   using M = ElasticMaterial;
+  const std::string speeds = "Vp and Vs, with density: K + G = density Vp², G = density Vs²";
   file.table("material", &CaseTables::material, "the continuum that the springs shall stand for, instead of [springs]")
       .keys({key("shear_modulus", &T::given, &M::shear_modulus, unit("Pa"), positive,
                  "G; with poisson_ratio or bulk_modulus_2d"),
@@ -217,10 +220,8 @@ void bind_material(File<CaseTables>& file) {
                  "1/3 in plane stress; calibrate finds the range of an assembly"),
              key("bulk_modulus_2d", &T::given, &M::bulk_modulus_2d, unit("Pa"), positive,
                  "K, mean stress of the plane over its change of area; with shear_modulus"),
-             key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive,
-                 "Vp; with s_wave_speed and density: K + G = density Vp²"),
-             key("s_wave_speed", &T::given, &M::s_wave_speed, unit("m/s"), positive,
-                 "Vs; with p_wave_speed and density: G = density Vs²"),
+             key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive, speeds),
+             key("s_wave_speed", &T::given, &M::s_wave_speed, unit("m/s"), positive, speeds),
              key("density", &T::given, &M::density, unit("kg/m³"), positive,
                  "density of the continuum, that is of discs and voids together: the discs have density / solid "
                  "fraction"),
@@ -230,15 +231,23 @@ void bind_material(File<CaseTables>& file) {
              key("static_only", &T::static_only,
                  "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs")});
   file.table("material")
-      .keys({key_in<CaseTables>("weighting", &Case::weighting, "as in [springs]"),
+      .keys({key_in<CaseTables>("weighting", &Case::weighting, "of these springs, see [springs]"),
              key_in<CaseTables>("bond_width", &Case::bending, &BendingOptions::bond_width, not_negative,
-                                "as in [springs]")});
+                                "of the bonds, see [springs]")});
   file.table("effects", completed, "effects that may be switched off")
       .keys({key_in<CaseTables>("rotation", &Case::rotation, optional, choices({"free", "restrained"}),
                                 "rotation of the discs; left out: free where a tangential spring turns them"),
              key_in<CaseTables>("prestress", &Case::prestress,
                                 "whether the forces that contacts carry at rest count in the stiffness; auto: where "
                                 "they are large, or nothing else may hold the bodies")});
+}
+
+std::vector<Key<Load>> keys_of_load() {
+  return {key("group", &Load::group, required, "the discs that it acts on"),
+          key("kind", &Load::kind,
+              "per_disc: on each disc; total: shared equally; traction: per area of the side that the group forms"),
+          key("force", &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
+          key("moment", &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise")};
 }
 
 void bind_supports_and_loads(File<CaseTables>& file) {
@@ -255,48 +264,23 @@ void bind_supports_and_loads(File<CaseTables>& file) {
                  "counted from 0"),
              key("box", &GroupCase::box, unit("m"), "the discs with their centre inside")});
   using S = Support;
+  const std::string prescribed = "prescribed motion; true: held at 0; left out: free";
   file.table("support", &CaseTables::supports, "prescribed motion of a group")
       .keys({key("group", &S::group, required,
                  "left, right, bottom, top, bottom_left, bottom_right, top_left, top_right, or your own"),
-             key("ux", &S::ux, held, unit("m"), "prescribed motion; true: held at 0; left out: free"),
-             key("uy", &S::uy, held, unit("m")), key("rotation", &S::rotation, held, unit("rad"), "counter-clockwise"),
+             key("ux", &S::ux, held, unit("m"), prescribed), key("uy", &S::uy, held, unit("m"), prescribed),
+             key("rotation", &S::rotation, held, unit("rad"), "counter-clockwise"),
              unbound_key<S>("schedule", KeyType::text, "in a run: the motion is multiplied by it")});
   using T = LoadTable;
-  file.table("load", &CaseTables::load_tables, "forces and moments on a group")
-      .keys({key("group", &T::load, &Load::group, required, "as in [[support]]"),
-             key("kind", &T::load, &Load::kind,
-                 "per_disc: on each disc; total: shared equally; traction: per area of the side that the group forms"),
-             key("force", &T::load, &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
-             key("moment", &T::load, &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise"),
-             key("case", &T::load_case, "loads of one name act together; a load without acts in every load case"),
-             unbound_key<T>("schedule", KeyType::text, "in a run: force and moment are multiplied by it")});
+  std::vector<Key<T>> load = keys_of_member(&T::load, keys_of_load());
+  load.push_back(key("case", &T::load_case, "loads of one name act together; a load without acts in every load case"));
+  load.push_back(unbound_key<T>("schedule", KeyType::text, "in a run: force and moment are multiplied by it"));
+  file.table("load", &CaseTables::load_tables, "forces and moments on a group").keys(load);
 }
 
 void bind_run(File<CaseTables>& file) {
   using R = RunCase;
-  using T = TimeStepOptions;
-  file.table("run", &CaseTables::run, "motion in time, for the verb run")
-      .keys({key("duration", &R::duration, run_duration,
-                 or_instead({"until_rest"}, "a run ends after a time, or at rest")),
-             key("time_step", &R::time_step, &T::step, run_time_step, "auto: by step_rule"),
-             key("gravity", &R::gravity, run_gravity),
-             key("until_rest", &R::until_rest, between(0, 1),
-                 "relax until the unbalanced force is this small, relative, such as 1e-10"),
-             key("step_rule", &R::time_step, &T::rule,
-                 "rule of an automatic step; lanczos: step_fraction of the exact critical step; bound: of a guaranteed "
-                 "lower "
-                 "bound of it, sooner known; thesis: an eighth of the period of one disc on one spring, no guarantee"),
-             key("step_fraction", &R::time_step, &T::fraction, range({.low = 0, .high = 1, .low_open = true}),
-                 "share of the critical step, for lanczos and bound"),
-             key("allow_unstable_step", &R::time_step, &T::allow_unstable,
-                 "allow a step above the critical one, and kT < 0"),
-             key("integrator", &R::integrator,
-                 "leapfrog: central differences; velocity_verlet: the same motion; thesis: Sukegawa (3.14)-(3.17) as "
-                 "printed, order 1; fourth_order: symplectic, four forces a step; all are of order 1 with dashpots, "
-                 "viscoelastic springs or local damping"),
-             key("motion", &R::motion,
-                 "small: contacts keep their direction, exactly the stiffness of statics; finite: they follow the "
-                 "discs")});
+  bind_motion(file, &CaseTables::run, &CaseTables::run, &R::probes);
   file.table("run.damping", &CaseTables::run, &R::damping, "damping of a run; at most one of stiffness and contact")
       .keys({key("mass", &Damping::mass, unit("1/s"), not_negative, "alpha: force -alpha m v on every disc"),
              key("stiffness", &Damping::stiffness, unit("s"), not_negative,
@@ -305,34 +289,30 @@ void bind_run(File<CaseTables>& file) {
                  "zeta: dashpots 2 zeta sqrt(m k) at contacts, m the reduced mass; instead of stiffness"),
              key("local", &Damping::local, range({.low = 0, .high = 1, .high_open = true}),
                  "non-viscous: this share of the resultant force, against the velocity")});
-  bind_motion(file, BodyFamily::bonded, &CaseTables::run, &R::probes);
   file.table("velocity", &CaseTables::run, &R::velocities, "velocity of a group at the start of a run")
-      .keys({key("group", &InitialVelocity::group, required, "as in [[support]]"),
+      .keys({key("group", &InitialVelocity::group, required, "the discs that have it"),
              key("velocity", &InitialVelocity::velocity, unit("m/s")),
              key("spin", &InitialVelocity::spin, unit("rad/s"), "of each disc, counter-clockwise")});
 }
 
 void bind_breakage(File<CaseTables>& file) {
-  bind_table_file(file, "strength");
-  file.table("strength", &CaseTables::strength, "strengths of the contacts, for quasistatic and calibrate")
-      .keys(strength_keys());
+  bind_strength(file, &CaseTables::strength);
   file.table("strength_target", &CaseTables::strength_target,
              "strengths of the material, for which calibrate finds those of the contacts")
       .keys(strength_target_keys());
+  const std::string longer = "positive: the cell grows longer along x, along y";
   file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
-      .keys({key("xx", &Voigt::xx, "positive: the cell grows longer along x"), key("yy", &Voigt::yy),
+      .keys({key("xx", &Voigt::xx, longer), key("yy", &Voigt::yy, longer),
              key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});
-  file.table("dead_load", &CaseTables::dead_loads,
-             "forces put on first, which stay while lambda grows, for the verb quasistatic")
-      .keys({key("group", &Load::group, required, "as in [[support]]"), key("kind", &Load::kind, "as in [[load]]"),
-             key("force", &Load::force, optional, unit("N/m (traction: Pa)"),
-                 "[f_x, f_y]; with frictional contacts it grows from none to this, event by event, before lambda does, "
-                 "beside the loads that forces at rest balance: the weight under which a packing fell is not given "
-                 "again"),
-             key("moment", &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise")});
+  file.table(
+          "dead_load", &CaseTables::dead_loads, like("load"),
+          "forces put on first, which stay while lambda grows, for the verb quasistatic; with frictional contacts they "
+          "grow from none to this, event by event, before lambda does, beside the loads that forces at rest balance: "
+          "the weight under which a packing fell is not given again")
+      .keys(keys_of_load());
   file.table("notch", &CaseTables::notches, "a straight cut through contacts from the start, for the verb quasistatic")
-      .keys({key("from", &Notch::from, required, unit("m"), "[x, y] of one end"),
-             key("to", &Notch::to, required, unit("m"), "[x, y] of the other end")});
+      .keys({key("from", &Notch::from, required, unit("m"), "its ends"),
+             key("to", &Notch::to, required, unit("m"), "its ends")});
   using Q = QuasistaticCase;
   file.table("quasistatic", &CaseTables::quasistatic, completed,
              "the path of the verb quasistatic: loads, motions or [strain] times lambda")
@@ -373,12 +353,15 @@ void bind_tasks(File<CaseTables>& file) {
              key("max_refinements", &SolverOptions::max_refinements, from(0, 100), "steps of iterative refinement"),
              key("memory_limit", &SolverOptions::memory_limit, bytes, not_negative,
                  "largest memory of the factor, also as \"4 GB\"; 0: what the machine has free")});
-  file.table("output", &CaseTables::output, completed, "what is written with --out").keys(output_keys());
+  bind_output(file, &CaseTables::output);
 }
 
 }  // namespace
 
 std::vector<Key<OutputCase>> output_keys() {
+  const auto of_runs = only_in({CaseKind::assembly, CaseKind::colliding});
+  const std::string interval =
+      "from one frame of a run, bodies and contacts for ParaView, to the next, and from one row of its histories";
   return {
       key_with<OutputCase, std::vector<OutputFile>>(
           "files",
@@ -390,28 +373,27 @@ std::vector<Key<OutputCase>> output_keys() {
           },
           choices(names_of<OutputFile>()), or_empty,
           by_default(std::vector{OutputFile::csv, OutputFile::vtk, OutputFile::picture}),
-          "csv: tables of bodies and contacts; vtk: an assembly for ParaView; picture: picture.svg, picture.png, of "
+          "csv: tables of bodies and contacts, grains.csv of a packing for [grains] path; vtk: an assembly for "
+          "ParaView; picture: picture.svg, picture.png, of "
           "bodies that collide at segments, and whose paths are not drawn, without those that lie farther from "
           "the box round these walls and the start than half its larger side; [] for none of them"),
       key("assembly", &OutputCase::assembly,
           "discs and contacts in assembly.json or, read and written faster, assembly.h5 (HDF5); without it pack and "
           "calibrate write json, solve and homogenize none"),
-      key("frame_interval", &OutputCase::frame_interval, unit("s"), positive,
-          "from one frame of a run to the next: bodies and contacts for ParaView"),
-      key("frame_contacts", &OutputCase::frame_contacts,
+      key("frame_interval", &OutputCase::frame_interval, of_runs, unit("s"), positive, interval),
+      key("probe_interval", &OutputCase::probe_interval, of_runs, unit("s"), positive, interval),
+      key("frame_contacts", &OutputCase::frame_contacts, of_runs,
           "contacts with their forces in every frame: some 50 bytes a body and 84 a contact, beside 100 a disc"),
-      key("probe_interval", &OutputCase::probe_interval, unit("s"), positive,
-          "from one row of the histories of a run to the next"),
-      key("checkpoint_interval", &OutputCase::checkpoint_interval, unit("s"), positive,
+      key("checkpoint_interval", &OutputCase::checkpoint_interval, of_runs, unit("s"), positive,
           "wall-clock time from one checkpoint of a run, or of the events of quasistatic, to the next")};
 }
 
 const File<CaseTables>& case_file() {
   static const File<CaseTables> file = [] {
-    File<CaseTables> made(case_schema, "case file");
-    bind_table_file(made, "springs");
+    File<CaseTables> made(case_schema, "case file", CaseKind::assembly);
+    made.ask(kinds_with);
     bind_assembly(made);
-    made.table("springs", &CaseTables::springs_table, "the springs of a contact").keys(springs_keys(true));
+    bind_springs(made, &CaseTables::springs_table);
     made.table("viscoelastic", &CaseTables::viscoelastic,
                "dashpots at the springs: complex moduli over frequency (homogenize), motion (run)")
         .keys(viscoelastic_keys());
@@ -434,31 +416,27 @@ namespace fs = std::filesystem;
 
 using namespace casefile;
 
-bool any_of_springs(const Viscoelasticity& springs, SpringModel model) {
-  return springs.normal.model == model || springs.tangential.model == model;
-}
-
 void check_radii(const TomlValue& table, const RadiusDistribution& radii) {
   if (table.find("radii") != nullptr && radii.smallest > radii.largest)
-    fail_at(*table.find("radii"), "assembly.radii",
+    fail_at(*table.find("radii"),
             fmt::format("smallest = {} is larger than largest = {}", radii.smallest, radii.largest), "",
             "Exchange them");
 }
 
 void check_support(const TomlValue& table, const Support& support) {
   if (support.ux || support.uy || support.rotation) return;
-  fail_at(table, "support", fmt::format("the support of '{}' holds nothing", support.group),
+  fail_at(table, fmt::format("the support of '{}' holds nothing", support.group),
           "ux, uy and rotation are all left out", "Add one, such as uy = true");
 }
 
 void check_load(const TomlValue& table, const Load& load) {
-  check_plain_name(*table.find("case"), "load.case", "a load case", "it becomes part of the names of files");
+  check_plain_name(*table.find("case"), "a load case", "it becomes part of the names of files");
   const TomlValue* moment = table.find("moment");
   if (table.find("force") == nullptr && moment == nullptr)
-    fail_at(table, "load", fmt::format("the load on '{}' has neither force nor moment", load.group),
-            "it would do nothing", "Add one, such as force = [1.0e3, 0.0]");
+    fail_at(table, fmt::format("the load on '{}' has neither force nor moment", load.group), "it would do nothing",
+            "Add one, such as force = [1.0e3, 0.0]");
   if (moment != nullptr && load.kind == LoadKind::traction)
-    fail_at(*moment, "load.moment", "a traction has no moment", "it is a force per area of a side",
+    fail_at(*moment, "a traction has no moment", "it is a force per area of a side",
             "Give the moment in a [[load]] of its own");
 }
 
@@ -479,7 +457,7 @@ std::vector<NamedLoads> load_cases_of(const std::vector<LoadTable>& tables) {
 void check_one_source_of_springs(const TomlValue& root) {
   const TomlValue* material = root.find("material");
   if (root.find("springs") == nullptr || material == nullptr) return;
-  fail_at(*material, "material", "springs and [material] are both given", "[material] says which springs to take",
+  fail_at(*material, "springs and [material] are both given", "[material] says which springs to take",
           "Remove one of them");
 }
 
@@ -493,22 +471,22 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
             "Add [springs] with kN and kT, or [material], or springs = \"FILE\"");
   }
   if (const TomlValue* ensemble = root.find("ensemble"); ensemble != nullptr && !assembly.random()) {
-    fail_at(*ensemble, "ensemble", "an ensemble needs random assemblies",
+    fail_at(*ensemble, "an ensemble needs random assemblies",
             fmt::format("kind = \"{}\" makes the same one every time", root.find("assembly")->find("kind")->text),
             "Set kind = \"delaunay\" or \"packing\", or remove [ensemble]");
   }
   const TomlValue* test = root.find("test");
   for (const char* other : {"support", "load"}) {
     if (test == nullptr || repeated(root, other).empty()) continue;
-    fail_at(repeated(root, other).front(), other, fmt::format("[test] and [[{}]] are both given", other),
+    fail_at(repeated(root, other).front(), fmt::format("[test] and [[{}]] are both given", other),
             "the test brings its own supports and loads", "Remove one of them");
   }
   if (test != nullptr && (assembly.lattice.periodic || assembly.delaunay.periodic)) {
-    fail_at(*root.find("assembly")->find("periodic"), "assembly.periodic", "a periodic assembly has no sides to pull",
+    fail_at(*root.find("assembly")->find("periodic"), "a periodic assembly has no sides to pull",
             "[test] pulls at the left and right sides", "Set periodic = false, or remove [test]");
   }
   if (test != nullptr && assembly.packing && assembly.packing->box.periodic()) {
-    fail_at(*root.find("packing")->find("sides"), "packing.sides", "a periodic assembly has no sides to pull",
+    fail_at(*root.find("packing")->find("sides"), "a periodic assembly has no sides to pull",
             "[test] pulls at the left and right sides", "Set sides = \"walls\", or remove [test]");
   }
 }
@@ -516,7 +494,7 @@ void check_contradictions(const TomlValue& root, const AssemblyCase& assembly) {
 TimedSupport timed(const Support& support, const TomlValue& table, std::span<const NamedSchedule> schedules) {
   const auto motion = [&](const std::optional<double>& value) -> std::optional<Schedule> {
     if (!value) return {};
-    return scheduled(table, "support", *value, schedules);
+    return scheduled(table, *value, schedules);
   };
   return {support.group, motion(support.ux), motion(support.uy), motion(support.rotation)};
 }
@@ -525,7 +503,7 @@ void check_one_load_case(const std::vector<TomlValue>& tables, const std::string
   for (const TomlValue& table : tables) {
     const TomlValue& name = *table.find("case");
     if (!name.text.empty() && name.text != first)
-      fail_at(name, "load.case", fmt::format("[run] has the load cases '{}' and '{}'", first, name.text),
+      fail_at(name, fmt::format("[run] has the load cases '{}' and '{}'", first, name.text),
               "a run is one motion, in which all loads act", "Keep one, or remove [run]");
   }
 }
@@ -534,7 +512,7 @@ void check_one_load_case(const std::vector<TomlValue>& tables, const std::string
 void check_no_run_needed(const TomlValue& root) {
   for (const char* list : {"wall", "velocity", "probe"}) {
     if (repeated(root, list).empty()) continue;
-    fail_at(repeated(root, list).front(), list, fmt::format("[[{}]] is given and [run] is not", list),
+    fail_at(repeated(root, list).front(), fmt::format("[[{}]] is given and [run] is not", list),
             "it belongs to motion in time", "Add [run] with a duration, or remove it");
   }
 }
@@ -545,8 +523,7 @@ void complete_run(const TomlValue& root, CaseTables& tables) {
   for (std::size_t k = 0; k < tables.supports.size(); ++k)
     supports.push_back(timed(tables.supports[k], repeated(root, "support")[k], tables.schedules));
   std::vector<Schedule> factors;
-  for (const TomlValue& table : repeated(root, "load"))
-    factors.push_back(scheduled(table, "load", 1, tables.schedules));
+  for (const TomlValue& table : repeated(root, "load")) factors.push_back(scheduled(table, 1, tables.schedules));
   const TomlValue* table = root.find("run");
   if (table == nullptr) return check_no_run_needed(root);
   RunCase& run = *tables.run;
@@ -559,7 +536,7 @@ void complete_run(const TomlValue& root, CaseTables& tables) {
   check_step(*table, run.time_step.step, run.duration);
   run.time_step.duration = run.duration.value_or(0);
   if (run.damping.stiffness > 0 && run.damping.contact > 0)
-    fail_at(*table->find("damping")->find("contact"), "run.damping.contact", "stiffness and contact are both given",
+    fail_at(*table->find("damping")->find("contact"), "stiffness and contact are both given",
             "each says which dashpots stand at the contacts", "Set one of them to 0");
 }
 
@@ -574,7 +551,7 @@ void complete_packing(const TomlValue& root, CaseTables& tables) {
   if (assembly.density) packing.settling.density = *assembly.density;
   if (tables.springs) packing.settling.springs = *tables.springs;
   if (entry_of(packing.method).open_top && !tables.springs)
-    fail_at(*root.find("packing")->find("method"), "packing.method", "bodies fall, and the case gives no springs",
+    fail_at(*root.find("packing")->find("method"), "bodies fall, and the case gives no springs",
             "they collide by kN and kT; [material] gives springs only for an assembly that is there",
             "Give [springs], or pack by growth");
   assembly.packing = std::move(packing);
@@ -583,8 +560,7 @@ void complete_packing(const TomlValue& root, CaseTables& tables) {
 /// A triangulation in a box: the number of discs follows from their size.
 void complete_delaunay(const TomlValue& root, DelaunayOptions& options) {
   if (!options.box) return;
-  options.discs =
-      with_key(*root.find("assembly"), "assembly", "box", [&] { return discs_that_fill(*options.box, options.radii); });
+  options.discs = with_key(*root.find("assembly"), "box", [&] { return discs_that_fill(*options.box, options.radii); });
   options.aspect = options.box->x / options.box->y;
 }
 
@@ -592,7 +568,7 @@ void complete_delaunay(const TomlValue& root, DelaunayOptions& options) {
 void check_seeds(const TomlValue& root, const std::string& key, std::uint64_t first, std::int64_t samples) {
   constexpr auto most = std::numeric_limits<std::int64_t>::max();
   if (first <= static_cast<std::uint64_t>(most - samples + 1)) return;
-  fail_at(value_at(root, key), key, fmt::format("{} take the seeds from {} on", counted(samples, "sample"), first),
+  fail_at(value_at(root, key), fmt::format("{} take the seeds from {} on", counted(samples, "sample"), first),
           fmt::format("the largest seed is {}", most), fmt::format("Give at most {}", most - samples + 1));
 }
 
@@ -618,7 +594,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                  "Use 'equidem pack', or add [assembly] with kind = \"packing\"");
   check_one_source_of_springs(root);
   resolve_springs_file(root, folder);
-  resolve_strength_file(root, folder);
+  resolve_strength_file(root, folder, CaseKind::assembly);
   CaseTables tables = case_file().read(root, folder);
 
   const std::optional<SpringsTable>& springs = tables.springs_table;
@@ -638,12 +614,10 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   check_strength_target(root);
   check_seeds(root, tables);
   if (tables.material)
-    tables.material->moduli =
-        at_key(*root.find("material"), "material", [&] { return moduli_of(tables.material->given); });
+    tables.material->moduli = at_key(*root.find("material"), [&] { return moduli_of(tables.material->given); });
   check_names(root, "group");
   for (std::size_t k = 0; k < tables.groups.size(); ++k)
-    if (const auto& box = tables.groups[k].box)
-      check_box(*repeated(root, "group")[k].find("box"), "group.box", box->low, box->high);
+    if (const auto& box = tables.groups[k].box) check_box(*repeated(root, "group")[k].find("box"), box->low, box->high);
   for (std::size_t k = 0; k < tables.supports.size(); ++k)
     check_support(repeated(root, "support")[k], tables.supports[k]);
   for (std::size_t k = 0; k < tables.load_tables.size(); ++k)
@@ -698,33 +672,6 @@ std::vector<double> frequencies_of(const Case& resolved, const Viscoelasticity& 
     return given.lowest ? logarithmic_frequencies(*given.lowest, *given.highest, given.per_decade)
                         : frequencies_of_interest(springs, given.per_decade);
   });
-}
-
-void check_viscoelastic(const Case& resolved, std::string_view verb) {
-  if (!resolved.viscoelastic || verb == "homogenize" || verb == "sweep") return;
-  const Viscoelasticity& springs = resolved.viscoelastic->springs;
-  const auto refuse = [&](const std::string& problem, const char* why, const char* remedy) {
-    bad_input_at(resolved.where("viscoelastic"), problem, why, remedy);
-  };
-  const auto any = [&](SpringModel model) { return any_of_springs(springs, model); };
-  if (verb == "solve") {
-    if (any(SpringModel::maxwell))
-      refuse("a Maxwell spring has no equilibrium", "its dashpot flows as long as it carries a force",
-             "Use 'equidem homogenize', which gives complex moduli, or another model");
-    if (any(SpringModel::table))
-      refuse("a table of springs over frequency has no equilibrium", "its stiffness at rest is not known",
-             "Use 'equidem homogenize', or remove [viscoelastic] to solve with elastic springs");
-  } else if (verb == "run") {
-    for (const SpringModel model : {SpringModel::maxwell, SpringModel::standard_solid, SpringModel::table}) {
-      if (any(model))
-        refuse(fmt::format("a run has no springs of the model \"{}\"", to_string(model)),
-               "its contacts are springs with dashpots beside them, Kelvin-Voigt",
-               "Use kelvin_voigt, or 'equidem homogenize' for complex moduli");
-    }
-  } else {
-    refuse(fmt::format("{} takes elastic springs, and the case gives [viscoelastic]", verb),
-           "its answer would be that of other springs", "Remove [viscoelastic]; homogenize, solve and run take it");
-  }
 }
 
 }  // namespace equidem

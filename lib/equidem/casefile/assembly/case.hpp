@@ -69,9 +69,6 @@ Viscoelasticity build_viscoelasticity(const Case& resolved, const std::optional<
 /// \throws Error (bad_input), with the line of the case file
 std::vector<double> frequencies_of(const Case& resolved, const Viscoelasticity& springs);
 
-/// \throws Error (bad_input), with the line of the case file, where a verb has no answer for [viscoelastic]
-void check_viscoelastic(const Case& resolved, std::string_view verb);
-
 enum class AssemblyKind { lattice, delaunay, packing, file };
 
 /// [assembly]; the options of the other kinds keep their defaults.
@@ -158,14 +155,8 @@ struct MaterialCase {
 };
 
 /// [run] and the tables that act in a run alone; exactly one of duration and until_rest is given.
-struct RunCase {
-  std::optional<double> duration;    ///< s
-  std::optional<double> until_rest;  ///< unbalanced force, relative
-  TimeStepOptions time_step;
-  Integrator integrator = SimulationOptions{}.integrator;
-  LoopKind::Motion motion = SimulationOptions{}.motion;
+struct RunCase : casefile::RunTable {
   Damping damping;
-  Vec2 gravity;                        ///< m/s²
   std::vector<TimedSupport> supports;  ///< supports of the case with their schedules; empty with [test], like loads
   std::vector<TimedLoad> loads;
   std::vector<Wall> walls;
@@ -233,6 +224,9 @@ struct CaseKey {
 /// The keys of all case files that have verbs with --set: all but studies. No path occurs twice.
 std::vector<CaseKey> case_keys();
 
+/// The kinds of case files that have a table or key, "springs" or "springs.kM"; no entries of lists.
+std::vector<CaseKind> kinds_with(std::string_view path);
+
 /// The unit, "" for none, of the key of a case file of any kind that a path such as "springs.kT" or "load.0.moment"
 /// names; nothing where there is no such key.
 std::optional<std::string> unit_of_case_key(std::string_view path);
@@ -261,7 +255,12 @@ struct CaseTables : Case, MotionTables {
 /// The case file, schema "equidem/1".
 const File<CaseTables>& case_file();
 
-/// [output] of all case files.
 std::vector<Key<OutputCase>> output_keys();
+
+/// Binds [output].
+template <class F, class Link>
+void bind_output(File<F>& file, Link output) {
+  file.table("output", output, completed, "what is written with --out").keys(output_keys());
+}
 
 }  // namespace equidem::casefile

@@ -24,6 +24,7 @@
 /// std::vector of them ([[table]]).
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <filesystem>
@@ -183,10 +184,19 @@ void assign(T& result, TomlValue& value, const std::filesystem::path& folder) {
   }
 }
 
-/// Throw an Error (bad_input) that names the line of a value, and the key.
-[[noreturn]] inline void fail_at(const TomlValue& at, const std::string& key, const std::string& problem,
+/// Throw an Error (bad_input) that names the line of a value, and its key.
+[[noreturn]] inline void fail_at(const TomlValue& at, const std::string& problem, const std::string& why,
+                                 const std::string& remedy) {
+  bad_input_at(at.place(), problem, why, remedy);
+}
+
+/// The place of a key of a table, which it may lack.
+std::string place_of(const TomlValue& table, const std::string& key);
+
+/// Likewise, of a key of a table.
+[[noreturn]] inline void fail_at(const TomlValue& table, const std::string& key, const std::string& problem,
                                  const std::string& why, const std::string& remedy) {
-  bad_input_at(fmt::format("{}: {}", at.where(), key), problem, why, remedy);
+  bad_input_at(place_of(table, key), problem, why, remedy);
 }
 
 /// The result of a step; its Error gets a place, unless it has one.
@@ -201,24 +211,22 @@ auto with_place(const std::string& where, const Step& step) {
 
 /// The result of a step; its Error gets the line of that key of the table.
 template <class Step>
-auto with_key(const TomlValue& table, const std::string& path, const char* key, const Step& step) {
-  return with_place(fmt::format("{}: {}.{}", table.find(key)->where(), path, key), step);
+auto with_key(const TomlValue& table, const char* key, const Step& step) {
+  return with_place(place_of(table, key), step);
 }
 
 /// The result of a step of the library: its Error, whose place may be the name of an option, gets the line of that key
 /// of the table, or of the table.
 /// \param usual the key of an Error without a place; empty: that of the table
 template <class Step>
-auto at_key(const TomlValue& table, const std::string& path, const Step& step, const std::string& usual = {}) {
+auto at_key(const TomlValue& table, const Step& step, const std::string& usual = {}) {
   try {
     return step();
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw;
     const std::string& option = error.where().empty() ? usual : error.where();
     const TomlValue* key = option.empty() ? nullptr : table.find(option);
-    throw Error(error.kind(), error.problem(), error.why(), error.remedy(),
-                key == nullptr ? fmt::format("{}: {}", table.where(), path)
-                               : fmt::format("{}: {}.{}", key->where(), path, option));
+    throw Error(error.kind(), error.problem(), error.why(), error.remedy(), (key == nullptr ? table : *key).place());
   }
 }
 
@@ -229,15 +237,15 @@ const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name);
 std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder);
 
 /// \throws Error (bad_input) where two tables of a list have one name, or a name is empty
-void check_names(const TomlValue& root, const char* list, const std::string& prefix = {});
+void check_names(const TomlValue& root, const char* list);
 
 /// \param what "a load case"
 /// \param use "it becomes part of the names of files"
 /// \throws Error (bad_input) where the text holds more than letters, digits, '_' and '-'
-void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use);
+void check_plain_name(const TomlValue& value, const std::string& what, const std::string& use);
 
 /// \throws Error (bad_input) where the corners of a box are not in ascending order
-void check_box(const TomlValue& given, const std::string& key, Vec2 low, Vec2 high);
+void check_box(const TomlValue& given, Vec2 low, Vec2 high);
 
 /// A member of an object, or of the value of a std::optional, which is given one if it is empty.
 template <class S, class M, class C>
@@ -277,7 +285,7 @@ inline constexpr auto bytes = [](KeySpec& key) {
 };
 /// A missing table is added with its defaults.
 inline constexpr auto completed = [](TableSpec& table) { table.completed = true; };
-/// Keys that this table has from another one are described there.
+/// The table has keys of another one, for what differs.
 inline auto like(std::string table) {
   return [table](TableSpec& spec) { spec.like = table; };
 }
@@ -319,6 +327,11 @@ inline auto when(std::string selector, std::vector<std::string> words) {
     spec.when_key = selector;
     spec.when = words;
   };
+}
+
+/// The key is one of the files of these kinds alone; of others that bind its table it is refused with a reason.
+inline auto only_in(std::vector<CaseKind> kinds) {
+  return [kinds](KeySpec& key) { key.kinds = kinds; };
 }
 
 /// Relations to other keys, or tables, of the table; `why` is the reason in messages.
@@ -483,7 +496,7 @@ inline constexpr const char* case_schema = "equidem/1";
 template <class F>
 class File {
  public:
-  File(std::string schema, std::string noun) : spec_{std::move(schema), std::move(noun)} {
+  File(std::string schema, std::string noun, CaseKind kind) : spec_{std::move(schema), std::move(noun), kind} {
     const std::string help = "says which rules the file follows: \"" + spec_.schema + "\"";
     table("").keys({unbound_key<F>("schema", KeyType::text, required, help),
                     key_in<F>("title", &CaseDocument::title, "shown in reports and pictures")});
@@ -502,6 +515,8 @@ class File {
     return Binder<decltype(target)>(*this, std::move(spec), target);
   }
   [[nodiscard]] const FileSpec& spec() const { return spec_; }
+  /// How the message on an unknown key finds files of other kinds that have it.
+  void ask(std::vector<CaseKind> (*kinds_with)(std::string_view path)) { spec_.kinds_with = kinds_with; }
 
   /// Check a document, fill in its defaults and assign its values.
   /// \param folder to which paths are relative; those of the document become the paths that the program opens
@@ -544,7 +559,16 @@ class File<F>::Binder {
   /// A table that holds other tables alone.
   void holds_tables() { file_.spec_.tables.push_back(spec_); }
 
-  void keys(const std::vector<Key<Item>>& keys) {
+  void keys(const std::vector<Key<Item>>& keys) { bind(keys); }
+  /// Of a base of the struct.
+  template <class Base>
+  void keys(const std::vector<Key<Base>>& keys) {
+    bind(keys);
+  }
+
+ private:
+  template <class S>
+  void bind(const std::vector<Key<S>>& keys) {
     if constexpr (is_vector<T>) {
       file_.openers_.emplace_back(spec_.name, [target = target_](F& into) { target(into).emplace_back(); });
     } else if constexpr (is_optional<T>) {
@@ -552,9 +576,8 @@ class File<F>::Binder {
         if (auto& bound = target(into); !bound) bound.emplace();
       });
     }
-    for (const Key<Item>& key : keys) {
-      describe(key.spec);
-      if (!key.read) continue;
+    for (const Key<S>& key : keys) {
+      if (!describe(key.spec) || !key.read) continue;
       file_.readers_.back() = [read = key.read, target = target_](F& into, TomlValue& value,
                                                                   const std::filesystem::path& folder) {
         if constexpr (is_vector<T>)
@@ -567,12 +590,21 @@ class File<F>::Binder {
     }
   }
 
- private:
-  void describe(KeySpec key) {
+  /// \return whether files of this kind have the key
+  bool describe(KeySpec key) {
     key.table = spec_.name;
+    if (!key.kinds.empty() && std::ranges::find(key.kinds, file_.spec_.kind) == key.kinds.end()) {
+      file_.spec_.others.push_back(std::move(key));
+      return false;
+    }
+    const auto is_selector = [&](const KeySpec& other) {
+      return other.table == key.table && other.name == key.when_key;
+    };
+    if (std::ranges::any_of(file_.spec_.others, is_selector)) key.when_key.clear(), key.when.clear();
     file_.spec_.keys.push_back(std::move(key));
     file_.readers_.emplace_back();
     if (!spec_.name.empty() && file_.spec_.table(spec_.name) == nullptr) file_.spec_.tables.push_back(spec_);
+    return true;
   }
 
   File& file_;

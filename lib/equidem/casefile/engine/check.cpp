@@ -22,7 +22,7 @@ std::string quoted_list(const std::vector<std::string>& words) {
 
 [[noreturn]] void fail(const TomlValue& value, const KeySpec& key, const std::string& problem,
                        const std::string& remedy) {
-  fail_at(value, key.path(), problem, fmt::format("{} is {}", key.name, expected(key)), remedy);
+  fail_at(value, problem, fmt::format("{} is {}", key.name, expected(key)), remedy);
 }
 
 /// A kind of value. In the texts {unit}, {range}, {choices} and {words} stand for those of the key, {number} for a
@@ -54,7 +54,7 @@ std::string like_example(const KeySpec& key) {
   if (value.type == Type::text && (key.type == KeyType::number || key.type == KeyType::number_or_auto ||
                                    key.type == KeyType::whole || key.type == KeyType::held)) {
     if (const auto advice = number_advice(value.text))
-      fail_at(value, key.path(), fmt::format("{} is text", value.shown()), advice->why, advice->remedy);
+      fail_at(value, fmt::format("{} is text", value.shown()), advice->why, advice->remedy);
     if (number_from<double>(value.text)) remedy = fmt::format("Leave out the quotes: {} = {}", key.name, value.text);
   }
   if (value.type == Type::real && key.type == KeyType::whole && value.real == std::floor(value.real) &&
@@ -136,10 +136,10 @@ void check_choice(const TomlValue& value, const KeySpec& key) {
   const std::string problem =
       fmt::format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name);
   if (const RemovedKey* removed = removed_key(key.table, key.name, value.text))
-    fail_at(value, key.path(), fmt::format("{} is of an earlier version", value.shown()),
+    fail_at(value, fmt::format("{} is of an earlier version", value.shown()),
             fmt::format("{} takes it no longer", key.name), std::string(removed->remedy));
   const auto refused = std::ranges::find(key.refused, value.text, &RefusedWord::word);
-  if (refused != key.refused.end()) fail_at(value, key.path(), problem, refused->why, refused->remedy);
+  if (refused != key.refused.end()) fail_at(value, problem, refused->why, refused->remedy);
   const auto meant = nearest(value.text, key.choices);
   fail(value, key, problem, meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Choose one of these");
 }
@@ -280,6 +280,7 @@ class Checker {
       if (table.completed) {
         TomlValue added;
         added.source = root_.source;
+        added.path = table.name;
         check_table(table, added);
         parent->entries.push_back({leaf, std::move(added)});
       }
@@ -293,7 +294,7 @@ class Checker {
     if (schema == nullptr)
       fail_at(root_, "schema", "missing key", fmt::format("every {} names the rules it follows", spec_.noun), remedy);
     if (schema->type == TomlValue::Type::text && schema->text == spec_.schema) return;
-    fail_at(*schema, "schema", fmt::format("{} is not the schema of a {}", schema->shown(), spec_.noun),
+    fail_at(*schema, fmt::format("{} is not the schema of a {}", schema->shown(), spec_.noun),
             fmt::format("this program reads \"{}\"", spec_.schema), remedy);
   }
 
@@ -322,7 +323,7 @@ class Checker {
   }
 
   [[noreturn]] void fail_missing(const TomlValue& table, const KeySpec& key) const {
-    fail_at(table, key.path(), "missing key", fmt::format("{} is needed", expected(key)),
+    fail_at(table, key.name, "missing key", fmt::format("{} is needed", expected(key)),
             key.table.empty() ? fmt::format("Add {} = ... at the top of the file", key.name)
                               : fmt::format("Add {} = ... to {}", key.name, spec_.table(key.table)->heading()));
   }
@@ -374,8 +375,16 @@ class Checker {
   [[noreturn]] void fail_unknown(const std::string& path, const TomlValue& table, const std::string& name,
                                  const TomlValue& value) const {
     if (const RemovedKey* removed = removed_key(path, name))
-      fail_at(value, key_path(path, name), fmt::format("{} is of an earlier version", name),
+      fail_at(value, fmt::format("{} is of an earlier version", name),
               fmt::format("the {} has it no longer", spec_.noun), std::string(removed->remedy));
+    const auto refuse_here = [&](const std::vector<CaseKind>& others) {
+      fail_at(value, fmt::format("{} does not apply to {}", name, to_string(spec_.kind)),
+              fmt::format("it is for {}", joined(others, [](CaseKind kind) { return to_string(kind); })), "Remove it");
+    };
+    for (const KeySpec& key : spec_.others)
+      if (key.table == path && key.name == name) refuse_here(key.kinds);
+    if (spec_.kinds_with != nullptr)
+      if (const auto others = spec_.kinds_with(key_path(path, name)); !others.empty()) refuse_here(others);
     const std::vector<std::string> here = names_below(path, table);
     std::string remedy = fmt::format("Known here: {}", joined(here));
     const std::vector<const KeySpec*> elsewhere = keys_elsewhere([&](const KeySpec& key) { return key.name == name; });
@@ -388,29 +397,28 @@ class Checker {
       remedy = fmt::format("Did you mean {}?", listed_paths(paths));
     }
     const bool as_table = value.is_table() || is_list_of_tables(value);
-    fail_at(value, key_path(path, name), as_table ? "unknown table" : "unknown key",
-            fmt::format("the {} is strict", spec_.noun), remedy);
+    fail_at(value, as_table ? "unknown table" : "unknown key", fmt::format("the {} is strict", spec_.noun), remedy);
   }
 
   void check_inner_table(const std::string& path, const TomlValue& outer, TomlValue& value, const TableSpec& spec) {
     const std::string& full = spec.name;
     if (!applies(path, outer, spec))
-      fail_at(value, full, "this table does not apply here",
+      fail_at(value, "this table does not apply here",
               fmt::format("it is for {} = {}", spec.when_key, joined(spec.when)), "Remove it");
     if (spec.repeated) {
       if (!value.is_array())
-        fail_at(value, full, fmt::format("this is {}", value.is_table() ? "a single table" : value.type_name()),
+        fail_at(value, fmt::format("this is {}", value.is_table() ? "a single table" : value.type_name()),
                 "there may be several, each with its own heading", fmt::format("Write [[{}]] above each", full));
       for (TomlValue& item : value.items) {
         if (!item.is_table())
-          fail_at(item, full, fmt::format("{} is {}", item.shown(), item.type_name()), "a table is needed",
+          fail_at(item, fmt::format("{} is {}", item.shown(), item.type_name()), "a table is needed",
                   fmt::format("Write [[{}]] and its keys below", full));
         check_table(spec, item);
       }
       return;
     }
     if (!value.is_table())
-      fail_at(value, full,
+      fail_at(value,
               is_list_of_tables(value) ? fmt::format("[[{}]] is a list of tables", full)
                                        : fmt::format("{} is {}", value.shown(), value.type_name()),
               "one table is needed", fmt::format("Write [{}] and its keys below", full));
@@ -440,7 +448,7 @@ class Checker {
 
   [[noreturn]] void fail_not_applying(const TomlValue& table, const KeySpec& key, const TomlValue& value) const {
     const std::string chosen = selected(key.table, table, key.when_key);
-    fail_at(value, key.path(),
+    fail_at(value,
             chosen.empty() ? "this key does not apply here"
                            : fmt::format("this key does not apply to {} = \"{}\"", key.when_key, chosen),
             fmt::format("it is for {}", joined(key.when)), fmt::format("Remove it, or change {}", key.when_key));
@@ -469,20 +477,19 @@ class Checker {
       if (alone == nullptr || given.size() != 1) return;
       names.erase(names.begin());
       const std::string needed = listed(names.empty() ? relation.others : names, " or ");
-      fail_at(*alone, key.path(), fmt::format("{} is given without {}", key.name, needed), relation.why,
+      fail_at(*alone, fmt::format("{} is given without {}", key.name, needed), relation.why,
               fmt::format("Add {} = ... to {}", needed, spec_.table(key.table)->heading()));
     }
     if (given.empty() && relation.kind == Kind::exactly_one) {
       if (names.size() == 1) fail_missing(table, key);
       const std::string none =
           names.size() == 2 ? fmt::format("neither {} nor {}", names[0], names[1]) : "none of " + listed(names);
-      fail_at(table, key.table, none + " is given", relation.why, "Give one of them");
+      fail_at(table, none + " is given", relation.why, "Give one of them");
     }
     if (given.size() < 2) return;
     const TomlEntry &first = *given[0], &second = *given[1];
     const bool by_option = second.value.line == 0 && !spec_.table(key.table)->repeated;
-    fail_at(second.value, key_path(key.table, second.name),
-            fmt::format("{} and {} are both given", first.name, second.name), relation.why,
+    fail_at(second.value, fmt::format("{} and {} are both given", first.name, second.name), relation.why,
             by_option ? fmt::format("Remove one of them: --set {}=none", key_path(key.table, first.name))
                       : "Remove one of them");
   }
@@ -495,6 +502,7 @@ class Checker {
       value = &table.entries.emplace_back(TomlEntry{key.name, default_of(key)}).value;
       value->source = table.source;
       value->line = table.line;
+      value->path = key.path();
     }
     visitor_.key(key, *value);
   }

@@ -27,120 +27,6 @@ const KeySpec* FileSpec::key(std::string_view table, std::string_view name) cons
 
 namespace {
 
-constexpr std::size_t text_width = 100;
-constexpr std::size_t name_width = 20;
-
-/// Append words, broken into lines of text_width that begin with `indent` spaces.
-void append_wrapped(std::string& out, const std::string& words, std::size_t indent) {
-  std::size_t column = indent;
-  std::string line(indent, ' ');
-  std::size_t begin = 0;
-  while (begin < words.size()) {
-    std::size_t end = words.find(' ', begin);
-    if (end == std::string::npos) end = words.size();
-    const std::size_t length = end - begin;
-    if (column > indent && column + 1 + length > text_width) {
-      out += line + "\n";
-      line.assign(indent, ' ');
-      column = indent;
-    }
-    if (column > indent) {
-      line += ' ';
-      ++column;
-    }
-    line += words.substr(begin, length);
-    column += length;
-    begin = end + 1;
-  }
-  out += line + "\n";
-}
-
-std::string need_of(const KeySpec& key) {
-  for (const KeyRelation& relation : key.relations)
-    if (relation.kind == KeyRelation::Kind::exactly_one)
-      return fmt::format("required, or {}", listed(relation.others, " or "));
-  return key.is_required() ? "required" : key.has_default() ? fmt::format("default {}", key.fallback) : "optional";
-}
-
-std::string meaning_of(const KeySpec& key) {
-  if (key.when_key.empty()) return key.help;
-  return fmt::format("({} = {}) {}", key.when_key, joined(key.when), key.help);
-}
-
-/// A text whose characters have no meaning for Markdown.
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (std::string_view("|*<").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-void append_key(std::string& out, const KeySpec& key) {
-  constexpr std::size_t indent = 2 + name_width + 1;
-  const std::string& name = key.name;
-  const std::size_t begin = out.size();
-  append_wrapped(out, fmt::format("{}; {}", expected(key), need_of(key)), indent);
-  if (name.size() > name_width) {
-    out.insert(begin, "  " + name + "\n");
-  } else {
-    out.replace(begin + 2, name.size(), name);
-  }
-  const std::string meaning = meaning_of(key);
-  if (!meaning.empty()) append_wrapped(out, meaning, indent);
-}
-
-/// Whether the table that this one is like describes the key.
-bool is_described_elsewhere(const FileSpec& spec, const KeySpec& key) {
-  const TableSpec* table = spec.table(key.table);
-  const KeySpec* there = table == nullptr || table->like.empty() ? nullptr : spec.key(table->like, key.name);
-  return there != nullptr && there->help == key.help;
-}
-
-/// "as in [bonds]: normal_dashpot, ...". \param quote of names
-std::string described_elsewhere(const FileSpec& spec, const TableSpec& table, const char* quote) {
-  std::vector<std::string> names;
-  for (const KeySpec& key : spec.keys)
-    if (key.table == table.name && is_described_elsewhere(spec, key))
-      names.push_back(fmt::format("{0}{1}{0}", quote, key.name));
-  return fmt::format("as in {0}{1}{0}: {2}", quote, spec.table(table.like)->heading(), joined(names));
-}
-
-}  // namespace
-
-std::string describe_keys(const FileSpec& spec, std::string_view table) {
-  std::string out;
-  for (const KeySpec& key : spec.keys)
-    if (key.table == table && !is_described_elsewhere(spec, key)) append_key(out, key);
-  return out;
-}
-
-std::string describe_table(const FileSpec& spec, const TableSpec& table) {
-  std::string out = fmt::format("\n{}  {}{}\n", table.heading(), table.help, table.required ? "; required" : "");
-  if (!table.like.empty()) append_wrapped(out, described_elsewhere(spec, table, ""), 2);
-  return out + describe_keys(spec, table.name);
-}
-
-std::string markdown_keys(const FileSpec& spec, std::string_view table) {
-  std::string out;
-  for (const KeySpec& key : spec.keys)
-    if (key.table == table && !is_described_elsewhere(spec, key))
-      out +=
-          fmt::format("| `{}` | {} | {} | {} |\n", key.name, escaped(expected(key)),
-                      key.has_default() ? fmt::format("`{}`", key.fallback) : need_of(key), escaped(meaning_of(key)));
-  return out.empty() ? out : "\n| key | value | default | meaning |\n|---|---|---|---|\n" + out;
-}
-
-std::string markdown_table(const FileSpec& spec, const TableSpec& table) {
-  std::string out =
-      fmt::format("\n### `{}`\n\n{}{}\n", table.heading(), escaped(table.help), table.required ? "; required" : "");
-  if (!table.like.empty()) out += fmt::format("\n{}\n", described_elsewhere(spec, table, "`"));
-  return out + markdown_keys(spec, table.name);
-}
-
-namespace {
-
 std::vector<std::string> segments_of(std::string_view path) {
   std::vector<std::string> segments(1);
   for (const char c : path) {
@@ -240,6 +126,7 @@ void apply_override(TomlValue& root, const std::string& assignment, const std::s
 TomlValue parse_document(std::string_view text, const std::string& source, std::span<const std::string> overrides) {
   TomlValue root = parse_toml(text, source);
   for (const std::string& assignment : overrides) apply_override(root, assignment);
+  set_paths(root);
   return root;
 }
 
@@ -277,27 +164,31 @@ std::filesystem::path opened(const std::filesystem::path& written, const std::fi
   return (written.is_absolute() ? written : folder / written).lexically_normal();
 }
 
-void check_names(const TomlValue& root, const char* list, const std::string& prefix) {
-  const std::string key = fmt::format("{}{}.name", prefix, list);
+std::string place_of(const TomlValue& table, const std::string& key) {
+  const TomlValue* value = table.find(key);
+  return fmt::format("{}: {}{}{}", (value == nullptr ? table : *value).where(), table.path,
+                     table.path.empty() ? "" : ".", key);
+}
+
+void check_names(const TomlValue& root, const char* list) {
   std::map<std::string_view, const TomlValue*> known;
   for (const TomlValue& table : repeated(root, list)) {
     const TomlValue& name = *table.find("name");
-    if (name.text.empty()) fail_at(name, key, "the name is empty", fmt::format("a name means one {}", list), "Name it");
+    if (name.text.empty()) fail_at(name, "the name is empty", fmt::format("a name means one {}", list), "Name it");
     if (const auto [other, is_new] = known.try_emplace(name.text, &table); !is_new)
-      fail_at(name, key, fmt::format("there are two {}s '{}'", list, name.text),
+      fail_at(name, fmt::format("there are two {}s '{}'", list, name.text),
               fmt::format("the other is at {}", other->second->where()), "Give each its own name");
   }
 }
 
-void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use) {
+void check_plain_name(const TomlValue& value, const std::string& what, const std::string& use) {
   if (is_plain_name(value.text)) return;
-  fail_at(value, key, fmt::format("{} cannot name {}", value.shown(), what), use,
-          "Use letters, digits, '_' and '-' only");
+  fail_at(value, fmt::format("{} cannot name {}", value.shown(), what), use, "Use letters, digits, '_' and '-' only");
 }
 
-void check_box(const TomlValue& given, const std::string& key, Vec2 low, Vec2 high) {
+void check_box(const TomlValue& given, Vec2 low, Vec2 high) {
   if (low.x >= high.x || low.y >= high.y)
-    fail_at(given, key, fmt::format("the box {} is empty", given.shown()), "it is [x_min, y_min, x_max, y_max]",
+    fail_at(given, fmt::format("the box {} is empty", given.shown()), "it is [x_min, y_min, x_max, y_max]",
             "Put the smaller numbers first");
 }
 
@@ -337,12 +228,6 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"measures", "columns", "", "Leave it out: columns are two largest diameters wide"},
     RemovedKey{"collisions", "contact_end", "", end_of_law},
     RemovedKey{"collisions", "friction_cap", "", both_limited},
-    RemovedKey{"collisions.walls", "contact_end", "", end_of_law},
-    RemovedKey{"collisions.walls", "friction_cap", "", both_limited},
-    RemovedKey{"collisions.pair", "contact_end", "", end_of_law},
-    RemovedKey{"collisions.pair", "friction_cap", "", both_limited},
-    RemovedKey{"stage.pair", "contact_end", "", end_of_law},
-    RemovedKey{"stage.pair", "friction_cap", "", both_limited},
     RemovedKey{"collisions", "ellipse_contact", "enlarged_as_printed", "Write \"enlarged\""},
     RemovedKey{"run", "integrator", "corrected_verlet", "Write \"velocity_verlet\""},
     RemovedKey{"strength", "after_breaking", "rubs", "Write \"frictional\""},
@@ -369,9 +254,11 @@ constexpr std::array words_of_earlier_versions{
     RemovedWord{"--discs", "Give the number of discs in the case"},
 };
 
-/// The table whose keys a stage takes: "collisions" of "stage.collisions".
+/// The table whose keys another one takes for what differs: "collisions" of "stage.collisions" and of "stage.pair".
 std::string_view of_the_case(std::string_view table) {
   constexpr std::string_view stage = "stage.";
+  for (const std::string_view contacts : {"collisions.walls", "collisions.pair", "stage.pair"})
+    if (table == contacts) return "collisions";
   return table.starts_with(stage) ? table.substr(stage.size()) : table;
 }
 

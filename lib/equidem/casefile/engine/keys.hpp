@@ -17,6 +17,22 @@
 
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/names.hpp"
+
+namespace equidem {
+
+/// The kinds of case files.
+enum class CaseKind { assembly, colliding, packing, study };
+
+template <>
+struct EnumNames<CaseKind> {
+  using enum CaseKind;
+  static constexpr const char* what = "kind of case";
+  static constexpr NamedValue<CaseKind> list[] = {
+      {assembly, "assemblies"}, {colliding, "colliding bodies"}, {packing, "packings"}, {study, "studies"}};
+};
+
+}  // namespace equidem
 
 namespace equidem::casefile {
 
@@ -70,7 +86,8 @@ struct KeySpec {
   std::vector<KeyRelation> relations = {};
   std::string help = {};
   std::vector<RefusedWord> refused = {};
-  bool may_be_empty = false;  ///< of a list of words
+  bool may_be_empty = false;         ///< of a list of words
+  std::vector<CaseKind> kinds = {};  ///< of files that have the key; empty: all that have the table
 
   static constexpr const char* required = "required";
   static constexpr const char* none = "none";
@@ -88,7 +105,7 @@ struct TableSpec {
   std::string when_key = {};  ///< of the table around it, or of another: "assembly.kind"
   std::vector<std::string> when = {};
   std::string help = {};
-  std::string like = {};  ///< a table that describes the keys that both have with the same help
+  std::string like = {};  ///< the table whose keys it has, for what differs; further keys are its own
 
   /// "[springs]", "[[load]]".
   [[nodiscard]] std::string heading() const { return repeated ? "[[" + name + "]]" : "[" + name + "]"; }
@@ -98,8 +115,12 @@ struct TableSpec {
 struct FileSpec {
   std::string schema;
   std::string noun;  ///< "case file"
+  CaseKind kind = CaseKind::assembly;
   std::vector<TableSpec> tables = {};
   std::vector<KeySpec> keys = {};
+  std::vector<KeySpec> others = {};  ///< keys that the same tables have in files of other kinds
+  /// The kinds of files that have a table or key; null: not known.
+  std::vector<CaseKind> (*kinds_with)(std::string_view path) = nullptr;
 
   [[nodiscard]] const TableSpec* table(std::string_view name) const;
   [[nodiscard]] const KeySpec* key(std::string_view table, std::string_view name) const;
@@ -127,14 +148,6 @@ void check_and_complete(TomlValue& root, const FileSpec& spec, const Visitor& vi
 
 /// The key of the file that a path such as "springs.kT" or "load.0.moment" names; null where there is none.
 const KeySpec* known_key(const FileSpec& spec, std::string_view path);
-
-/// Text on keys, at most 100 columns wide: those at the top of the file, those of one table under its heading.
-std::string describe_keys(const FileSpec& spec, std::string_view table);
-std::string describe_table(const FileSpec& spec, const TableSpec& table);
-
-/// These keys as a table in Markdown: key, value, default and meaning.
-std::string markdown_keys(const FileSpec& spec, std::string_view table);
-std::string markdown_table(const FileSpec& spec, const TableSpec& table);
 
 /// Number of bytes of a value of KeyType::bytes; none if it is invalid.
 std::optional<double> bytes_of(const TomlValue& value);

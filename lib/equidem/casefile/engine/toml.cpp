@@ -206,6 +206,16 @@ std::string TomlValue::where() const {
   return line > 0 ? fmt::format("{}:{}", name, line) : name;
 }
 
+std::string TomlValue::place() const {
+  return path.empty() ? where() : fmt::format("{}: {}", where(), path);
+}
+
+void set_paths(TomlValue& value, const std::string& path) {
+  value.path = path;
+  for (TomlValue& item : value.items) set_paths(item, path);
+  for (auto& [name, entry] : value.entries) set_paths(entry, path.empty() ? name : path + "." + name);
+}
+
 std::string TomlValue::type_name() const {
   return to_string(type);
 }
@@ -244,7 +254,9 @@ TomlValue parse_toml(std::string_view text, const std::string& source) {
   check_depth(text, source);
   const auto name = std::make_shared<const std::string>(source);
   try {
-    return plain(toml::parse(text, std::string_view(source)), name);
+    TomlValue root = plain(toml::parse(text, std::string_view(source)), name);
+    set_paths(root);
+    return root;
   } catch (const toml::parse_error& error) {
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     const bool json = first != std::string_view::npos && text[first] == '{';

@@ -30,6 +30,7 @@ struct TomlValue {
   bool is_path =
       false;  ///< text is a path resolved against the folder of the file; the echo makes it relative to its folder
   std::string text;
+  std::string path;                ///< "load.force": of the value and of the items in it; "" at the top
   std::vector<TomlValue> items;    ///< of an array
   std::vector<TomlEntry> entries;  ///< of a table
 
@@ -44,6 +45,8 @@ struct TomlValue {
   [[nodiscard]] TomlValue* find(std::string_view name);
   /// "cases/a.toml:7", or the option of the command line.
   [[nodiscard]] std::string where() const;
+  /// "cases/a.toml:7: load.force".
+  [[nodiscard]] std::string place() const;
   /// "a table", "an array", "text", ...: for messages.
   [[nodiscard]] std::string type_name() const;
   /// The value in short, as TOML: `21`, `"hexagonal"`, `nan`.
@@ -80,6 +83,9 @@ struct CaseDocument {
   /// Headings of those of some tables that the document has: {"[test]", "[[load]]"}.
   [[nodiscard]] std::vector<std::string> headings(std::span<const char* const> tables) const;
 };
+
+/// Sets the path of a value and of all in it.
+void set_paths(TomlValue& value, const std::string& path = {});
 
 /// \param source name of the file, for messages
 /// \throws Error (bad_input) with file and line where the text is not TOML

@@ -18,8 +18,7 @@ using namespace casefile;
 void check_stress(const TomlValue& table, const GrainTables& tables, const Probe& probe) {
   if (!has_stress(probe)) return;
   const auto refuse = [&](const char* what, const char* why, const char* advice) {
-    fail_at(*table.find("quantities"), "probe.quantities",
-            fmt::format("the probe '{}' has a stress {}", probe.name, what), why, advice);
+    fail_at(*table.find("quantities"), fmt::format("the probe '{}' has a stress {}", probe.name, what), why, advice);
   };
   if (!probe.box) refuse("and no box", "a stress is the mean over an area", "Add box = [x_min, y_min, x_max, y_max]");
   if (tables.body == Body::sphere)
@@ -33,14 +32,14 @@ void check_stress(const TomlValue& table, const GrainTables& tables, const Probe
 /// A probe of a group has its bodies.
 void choose_bodies(const TomlValue& table, const std::vector<std::string>& groups, Probe& probe) {
   check_bodies(table, probe, groups.size());
-  if (probe.box) check_box(*table.find("box"), "probe.box", probe.box->low, probe.box->high);
+  if (probe.box) check_box(*table.find("box"), probe.box->low, probe.box->high);
   const TomlValue* group = table.find("group");
   if (group == nullptr) return;
   for (std::size_t g = 0; g < groups.size(); ++g)
     if (groups[g] == probe.group) probe.bodies.push_back(static_cast<std::int32_t>(g));
   if (!probe.bodies.empty()) return;
   const auto meant = nearest(probe.group, groups);
-  fail_at(*group, "probe.group", fmt::format("there are no grains of the group {}", group->shown()), "",
+  fail_at(*group, fmt::format("there are no grains of the group {}", group->shown()), "",
           meant ? fmt::format("Did you mean \"{}\"?", *meant)
                 : "Name a group that grains have where the run, or a stage that adds them, begins");
 }
@@ -49,21 +48,29 @@ void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene)
   const TomlValue* given = collisions.find("ellipse_contact");
   const auto is_ellipse = [](const Grain& grain) { return grain.shape() == GrainShape::ellipse; };
   if (given != nullptr && std::ranges::none_of(scene.grains, is_ellipse))
-    fail_at(*given, "collisions.ellipse_contact", "ellipse_contact is given without ellipses",
-            "discs have no need of it", "Remove it, or give grains half_axes");
+    fail_at(*given, "ellipse_contact is given without ellipses", "discs have no need of it",
+            "Remove it, or give grains half_axes");
+}
+
+void take_run(GrainTables& tables) {
+  const RunTable& run = tables.run;
+  tables.duration = run.duration.value_or(0);
+  tables.step = {.time_step = run.time_step.step, .steps_per_contact = run.steps_per_contact};
+  tables.scene.gravity = run.gravity;
+  tables.options.integrator = run.integrator_of_forces;
 }
 
 void complete_run(const TomlValue& run, GrainTables& tables) {
   if (tables.stages.empty() && run.find("duration") == nullptr)
-    fail_at(run, "run.duration", "missing key", "a number in s, > 0 is needed",
+    fail_at(run, "duration", "missing key", "a number in s, > 0 is needed",
             "Add duration = ... to [run], or [[stage]]");
   if (const TomlValue* given = run.find("duration"); given != nullptr && !tables.stages.empty())
-    fail_at(*given, "run.duration", "duration and [[stage]] are both given", "stages have durations of their own",
+    fail_at(*given, "duration and [[stage]] are both given", "stages have durations of their own",
             "Remove one of them");
   check_step(run, tables.step.time_step, tables.duration);
   const TomlValue* integrator = run.find("integrator");
   if (integrator != nullptr && !gives_force(tables.options.law))
-    fail_at(*integrator, "run.integrator", fmt::format("{} has a step of its own", to_string(tables.options.law)),
+    fail_at(*integrator, fmt::format("{} has a step of its own", to_string(tables.options.law)),
             "integrators are for the laws that give a force: " + names_of_laws(LawKind::force),
             "Remove it, or change collisions.law");
   tables.step.longest = tables.duration;
@@ -74,8 +81,7 @@ void check_stresses(const TomlValue& root, const GrainTables& tables) {
   const auto check = [&](const std::vector<Wall>& walls) {
     for (const Wall& wall : walls)
       if (wall.servo && wall.servo->is_stress)
-        fail_at(*root.find("grains"), "grains.body",
-                fmt::format("wall '{}' holds a stress and meets spheres", wall.name),
+        fail_at(*root.find("grains"), "body", fmt::format("wall '{}' holds a stress and meets spheres", wall.name),
                 "their forces are N, and a length in the plane is no area", "Give force in [wall.servo]");
   };
   check(tables.scene.walls);
@@ -98,7 +104,7 @@ bool describes_grains(const TomlValue& root) {
     const TomlValue* found = root.find(table);
     if (found == nullptr) continue;
     if (root.find("assembly") == nullptr) return true;
-    fail_at(*found, table, "grains that collide and [assembly] are both in the case",
+    fail_at(*found, "grains that collide and [assembly] are both in the case",
             "contacts of an assembly are there from the start and stay", "Keep one of them");
   }
   return false;
@@ -119,14 +125,15 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
                            std::span<const std::string> overrides) {
   TomlValue root = parse_document(content, name, overrides);
   resolve_springs_file(root, folder);
-  resolve_bond_strengths(root, folder);
+  resolve_strength_file(root, folder, CaseKind::colliding);
   GrainTables tables = grain_file().read(root, folder);
+  take_run(tables);
   tables.common.density = one_density(
       root, {{"grains", tables.common.density}, {"springs", tables.springs ? tables.springs->density : std::nullopt}});
   GrainShapes shapes(tables.body);
   tables.groups = complete_bodies(root, shapes, tables);
   complete_bonds(root, tables);
-  check_names_of_walls(root, "wall", tables.groups);
+  check_names_of_walls(root, tables.groups);
   const auto schedules = read_schedules(root, tables.schedule_tables);
   tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   complete_cell(root, schedules, tables);
@@ -140,7 +147,7 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   check_stresses(root, tables);
   complete_run(*root.find("run"), tables);
   if (tables.shaking_table) complete_shaking(root, tables);
-  if (tables.measures) at_key(*root.find("measures"), "measures", [&] { check(*tables.measures, tables.body); });
+  if (tables.measures) at_key(*root.find("measures"), [&] { check(*tables.measures, tables.body); });
   check_probes(root);
   for (std::size_t k = 0; k < tables.probes.size(); ++k) {
     const TomlValue& table = repeated(root, "probe")[k];

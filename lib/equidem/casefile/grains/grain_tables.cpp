@@ -81,10 +81,9 @@ std::vector<Key<PairOptions>> contact_keys() {
       rebound_key<Restitution>(
           "restitution", from(0, 1), not_beside({"damping"}, "each says how strong the dashpot is"),
           "speed after over speed before, of two bodies that meet head-on without gravity; give it or damping"),
-      rebound_key<DashpotDamping>(
-          "damping", range({.low = 0, .high = 10, .low_open = true}),
-          "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc, as in [settling] of a packing; of "
-          "laws with linear springs and dashpots"),
+      rebound_key<DashpotDamping>("damping", range({.low = 0, .high = 10, .low_open = true}),
+                                  "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc; of "
+                                  "laws with linear springs and dashpots"),
       stiffness_key<SpringStiffness>("stiffness", unit(unit_of_stiffness()),
                                      not_beside({"dimensionless_stiffness", "contact_duration", "largest_overlap",
                                                  "young_modulus", "shear_wave_speed"},
@@ -131,9 +130,9 @@ std::vector<Key<PairOptions>> changed_contact_keys() {
 }
 
 std::vector<Key<PairOptions>> pair_keys() {
-  std::vector<Key<PairOptions>> pair{
-      unbound_key<PairOptions>("group", KeyType::text, required, "group of grains"),
-      unbound_key<PairOptions>("with", KeyType::text, required, "a group of grains, or the name of a [[wall]]")};
+  const std::string two = "two groups of grains, or a group and the name of a [[wall]]";
+  std::vector<Key<PairOptions>> pair{unbound_key<PairOptions>("group", KeyType::text, required, two),
+                                     unbound_key<PairOptions>("with", KeyType::text, required, two)};
   for (Key<PairOptions>& key : changed_contact_keys()) pair.push_back(std::move(key));
   return pair;
 }
@@ -169,10 +168,7 @@ void bind_collisions(File<GrainTables>& file) {
   file.table("collisions.pair", repeated_table, like("collisions"),
              "contacts of two groups, or of a group and a wall, where they differ from that")
       .described(pair_keys());
-  bind_table_file(file, "springs");
-  file.table("springs", &T::springs,
-             "kN, kT of all contacts, those with walls too, instead of stiffness and tangential_ratio")
-      .keys(springs_keys(false));
+  bind_springs(file, &T::springs);
 }
 
 namespace {
@@ -187,8 +183,7 @@ PairOptions with(PairOptions options, const TomlValue& table) {
 void check_one_density(const TomlValue& table, const GrainTables& tables) {
   const auto [least, most] = std::ranges::minmax(tables.densities);
   if (least < most && tables.body == Body::disc)
-    fail_at(*table.find("shear_wave_speed"), "collisions.shear_wave_speed",
-            fmt::format("the grains have densities from {} to {} kg/m³", least, most),
+    fail_at(*table.find("shear_wave_speed"), fmt::format("the grains have densities from {} to {} kg/m³", least, most),
             "springs of wave speeds belong to one density",
             "Give one density, or stiffness and tangential_ratio for each pair");
 }
@@ -202,27 +197,25 @@ void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions&
   for (const char* key : {"stiffness", "dimensionless_stiffness", "contact_duration", "largest_overlap",
                           "young_modulus", "shear_wave_speed", "tangential_ratio"})
     if (const TomlValue* given = collisions.find(key))
-      fail_at(*given, fmt::format("collisions.{}", key), fmt::format("[springs] and {} are both given", key),
-              "each says how stiff a contact is", "Remove one of them");
+      fail_at(*given, fmt::format("[springs] and {} are both given", key), "each says how stiff a contact is",
+              "Remove one of them");
   if (tables.body == Body::sphere)
-    fail_at(table, "springs", "the grains are spheres", "kN and kT are springs of discs per metre of depth",
+    fail_at(table, "the grains are spheres", "kN and kT are springs of discs per metre of depth",
             "Give stiffness in [collisions] instead, or set grains.body = \"disc\"");
   if (!is_linear(describe(tables.options.law)))
-    fail_at(table, "springs", fmt::format("{} has no linear spring", to_string(tables.options.law)),
+    fail_at(table, fmt::format("{} has no linear spring", to_string(tables.options.law)),
             "kN and kT are linear springs",
             fmt::format("Set collisions.law to one of {}, or give stiffness there", joined(laws_with(is_linear))));
   if (weighting != SpringWeighting::uniform)
-    fail_at(*table.find("weighting"), "springs.weighting",
+    fail_at(*table.find("weighting"),
             fmt::format("the springs differ from contact to contact: weighting = \"{}\"", to_string(weighting)),
             "contacts of bodies that collide come and go, and all have the same springs",
             "Calibrate with weighting = \"uniform\"");
-  if (constants.kT < 0)
-    fail_at(*table.find("kT"), "springs.kT", fmt::format("kT = {:.6g} Pa is negative", constants.kT),
-            "no motion of the discs is stable with it", "Give springs with kT of 0 or more");
+  check_stable_in_motion(root, constants);
   const auto has_it = [&](double given) { return std::abs(given - *density) <= 1e-6 * *density; };
   if (density && std::ranges::none_of(tables.densities, has_it))
     fail_at(
-        *table.find("density"), "springs.density",
+        *table.find("density"),
         fmt::format("the springs are for discs of {:.9g} kg/m³, and no grain has that density: the first has {:.9g}",
                     *density, tables.densities.front()),
         "both are the density of the discs themselves", "Remove one of them");
@@ -230,54 +223,27 @@ void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions&
   if (!is_map(tables.options.law)) bodies.tangential_ratio = constants.ratio();
 }
 
-/// Whether a value stands in one of these tables, or is one of them.
-bool stands_in(std::span<const TomlValue> tables, const TomlValue& value) {
-  return std::ranges::any_of(tables, [&](const TomlValue& table) {
-    return table.where() == value.where() || std::ranges::any_of(table.entries, [&](const TomlEntry& entry) {
-             return entry.value.where() == value.where();
-           });
-  });
-}
-
 /// The error of set_kinds with the line and the key of its option: "walls.stiffness", "pairs.2.with".
-/// \param stage that may have given it; null: none
-[[noreturn]] void fail_at_option(const Error& error, const TomlValue& collisions, const TomlValue* stage) {
-  std::string option = error.where(), name = "collisions";
-  const auto next_segment = [&] {
-    const std::size_t dot = std::min(option.find('.'), option.size());
-    std::string segment = option.substr(0, dot);
-    option.erase(0, dot + 1);
-    return segment;
-  };
-  const TomlValue* walls = collisions.find("walls");
+[[noreturn]] void fail_at_option(const Error& error, const TomlValue& collisions) {
+  std::vector<std::string_view> words = parts_of(error.where(), '.');
   std::vector<const TomlValue*> tables;  // the first that has the key is at fault, else the first
-  if (option.starts_with("pairs.")) {
-    next_segment();
-    tables.push_back(&repeated(collisions, "pair")[*number_from<std::size_t>(next_segment())]);
-    if (walls != nullptr) tables.push_back(walls);
-    name += ".pair";
-  } else if (option.starts_with("walls")) {
-    next_segment();
-    tables.push_back(walls);
-    name += ".walls";
-  } else if (option == "group") {
-    name = "grain";
-  }
+  const TomlValue* walls = collisions.find("walls");
+  if (words.front() == "pairs") tables.push_back(&repeated(collisions, "pair")[*number_from<std::size_t>(words[1])]);
+  if (walls != nullptr && (words.front() == "pairs" || words.front() == "walls")) tables.push_back(walls);
   tables.push_back(&collisions);
-  const auto found =
-      std::ranges::find_if(tables, [&](const TomlValue* table) { return table->find(option) != nullptr; });
-  const TomlValue& culprit = found == tables.end() ? *tables.front() : *(*found)->find(option);
-  if (stage != nullptr && stands_in(repeated(*stage, "pair"), culprit)) name = "stage.pair";
-  if (const TomlValue* changed = stage != nullptr ? stage->find("collisions") : nullptr)
-    if (stands_in({changed, 1}, culprit)) name = "stage.collisions";
-  if (!option.empty()) name += '.' + option;
-  fail_at(culprit, name, error.problem(), error.why(), error.remedy());
+  words.erase(words.begin(), words.begin() + (words.front() == "pairs" ? 2 : words.front() == "walls" ? 1 : 0));
+  const std::string option(words.empty() ? "" : words.front());
+  if (option == "group")
+    bad_input_at(collisions.where() + ": grain.group", error.problem(), error.why(), error.remedy());
+  for (const TomlValue* table : tables)
+    if (const TomlValue* given = table->find(option)) fail_at(*given, error.problem(), error.why(), error.remedy());
+  if (option.empty()) fail_at(*tables.front(), error.problem(), error.why(), error.remedy());
+  fail_at(*tables.front(), option, error.problem(), error.why(), error.remedy());
 }
 
 }  // namespace
 
-void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables,
-                         const TomlValue* stage) {
+void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables) {
   const TomlValue& table = *root.find("collisions");
   const auto& [contact, young_modulus, poisson_ratio, shear_wave_speed] = tables.collisions;
   CollisionOptions options{.body = tables.body, .bodies = contact};
@@ -298,34 +264,32 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
   try {
     tables.contacts = set_kinds(tables.scene, groups, options, tables.options.law);
   } catch (const Error& error) {
-    fail_at_option(error, table, stage);
+    fail_at_option(error, table);
   }
 }
 
 namespace {
 
 /// Disc, ellipse or clump.
-void read_shape(const TomlValue& table, const std::string& path, const GrainTable& read, double density,
-                GrainShapes& shapes, Grain& grain) {
+void read_shape(const TomlValue& table, const GrainTable& read, double density, GrainShapes& shapes, Grain& grain) {
   const char* key = read.radius ? "radius" : read.half_axes ? "half_axes" : "discs";
-  with_key(table, path, key, [&] {
+  with_key(table, key, [&] {
     if (read.radius) return shapes.make_disc(grain, *read.radius, density);
     if (read.half_axes) return shapes.make_ellipse(grain, read.half_axes->x, read.half_axes->y, density);
     shapes.make_clump(grain, read.discs, density);
   });
 }
 
-/// \param path of the table: "grain", "stage.grain"
-void add_grain(const TomlValue& table, const std::string& path, const GrainTable& read,
-               std::optional<double> common_density, GrainShapes& shapes, GrainRows& bodies) {
+void add_grain(const TomlValue& table, const GrainTable& read, std::optional<double> common_density,
+               GrainShapes& shapes, GrainRows& bodies) {
   if (!read.density && !common_density) {
-    fail_at(table, path + ".density", "the density is missing", "motion needs the mass of the grains",
-            fmt::format("Add density = ... in kg/m³ to [grains], or to each [[{}]]", path));
+    fail_at(table, "density", "the density is missing", "motion needs the mass of the grains",
+            fmt::format("Add density = ... in kg/m³ to [grains], or to each [[{}]]", table.path));
   }
-  check_group_name(*table.find("group"), path + ".group");
+  check_group_name(*table.find("group"));
   Grain grain = read.grain;
   bodies.densities.push_back(read.density ? *read.density : *common_density);
-  read_shape(table, path, read, bodies.densities.back(), shapes, grain);
+  read_shape(table, read, bodies.densities.back(), shapes, grain);
   bodies.grains.push_back(grain);
   bodies.groups.push_back(read.group);
 }
@@ -340,7 +304,7 @@ void check_density_of_springs(const TomlValue& root, const GrainTables& tables, 
     const double own = file.densities[k];
     if (std::abs(own - *stated) <= tolerance * *stated) continue;
     fail_at(
-        *root.find("springs")->find("density"), "springs.density",
+        *root.find("springs")->find("density"),
         fmt::format("it is {:.9g} kg/m³ here and {:.9g} kg/m³ at {}:{}", *stated, own, path.string(), file.lines[k]),
         "both are the density of the discs themselves",
         "Pack with these springs, which carry it, or take the column of densities out of the file of grains");
@@ -349,45 +313,44 @@ void check_density_of_springs(const TomlValue& root, const GrainTables& tables, 
 
 }  // namespace
 
-void check_group_name(const TomlValue& group, const std::string& key) {
-  if (group.text.empty()) fail_at(group, key, "the name is empty", "a group is known by its name", "Name it");
-  check_plain_name(group, key, "a group", "it stands in tables");
+void check_group_name(const TomlValue& group) {
+  if (group.text.empty()) fail_at(group, "the name is empty", "a group is known by its name", "Name it");
+  check_plain_name(group, "a group", "it stands in tables");
   if (group.text == name_of_all_walls)
-    fail_at(group, key, "a group of grains is called 'walls'", "the name stands for all of them", "Name it otherwise");
+    fail_at(group, "a group of grains is called 'walls'", "the name stands for all of them", "Name it otherwise");
 }
 
-void check_names_of_walls(const TomlValue& holder, const std::string& path, const std::vector<std::string>& groups) {
-  const auto check = [&](const TomlValue& name, const std::string& key) {
+void check_names_of_walls(const TomlValue& holder, const std::vector<std::string>& groups) {
+  const auto check = [&](const TomlValue& name) {
     if (name.text == name_of_all_walls)
-      fail_at(name, key, "a wall is called 'walls'", "the name stands for all of them", "Name it otherwise");
+      fail_at(name, "a wall is called 'walls'", "the name stands for all of them", "Name it otherwise");
     if (std::find(groups.begin(), groups.end(), name.text) != groups.end())
-      fail_at(name, key, fmt::format("a wall and a group of grains are both called '{}'", name.text),
+      fail_at(name, fmt::format("a wall and a group of grains are both called '{}'", name.text),
               "[[collisions.pair]] chooses them by name", "Rename one of them");
   };
-  for (const TomlValue& wall : repeated(holder, "wall")) check(*wall.find("name"), path + ".name");
+  for (const TomlValue& wall : repeated(holder, "wall")) check(*wall.find("name"));
   for (const TomlValue& renaming : repeated(holder, "rename"))
-    if (renaming.find("wall") != nullptr) check(*renaming.find("to"), "stage.rename.to");
+    if (renaming.find("wall") != nullptr) check(*renaming.find("to"));
 }
 
-GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const std::string& prefix,
-                    const CommonBodyTable& common, const std::vector<GrainTable>& read, GrainShapes& shapes,
-                    const GrainTables& tables) {
+GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const CommonBodyTable& common,
+                    const std::vector<GrainTable>& read, GrainShapes& shapes, const GrainTables& tables) {
   GrainRows bodies;
   if (common.path) {
     std::optional<Vec2> cell;
     if (tables.cell_table && tables.cell_table->along == PeriodicCell::Along::xy)
       cell = Vec2{tables.cell_table->width, tables.cell_table->height};
-    bodies = with_key(*holder.find("grains"), prefix + "grains", "path",
+    bodies = with_key(*holder.find("grains"), "path",
                       [&] { return read_grains(*common.path, common.density, shapes, cell); });
     check_density_of_springs(root, tables, *common.path, bodies);
   }
   for (std::size_t k = 0; k < read.size(); ++k)
-    add_grain(repeated(holder, "grain")[k], prefix + "grain", read[k], common.density, shapes, bodies);
+    add_grain(repeated(holder, "grain")[k], read[k], common.density, shapes, bodies);
   return bodies;
 }
 
 std::vector<std::string> complete_bodies(const TomlValue& root, GrainShapes& shapes, GrainTables& tables) {
-  GrainRows bodies = bodies_of(root, root, "", tables.common, tables.grain_tables, shapes, tables);
+  GrainRows bodies = bodies_of(root, root, tables.common, tables.grain_tables, shapes, tables);
   if (tables.common.path) tables.grain_file = tables.common.path->string();
   if (bodies.grains.empty()) {
     fail_at(root, "grain", "there are no grains", "something has to move",
@@ -410,25 +373,6 @@ std::vector<Key<GrainBond>> keys_of_bonds() {
   return keys;
 }
 
-/// The keys of contacts that break at rest, less two: without a bond discs are always frictional, and have no facets.
-std::vector<Key<StrengthOptions>> strength_keys_of_bonds() {
-  std::vector<Key<StrengthOptions>> keys = strength_keys();
-  std::erase_if(keys, [](const Key<StrengthOptions>& key) {
-    return key.spec.name == "after_breaking" || key.spec.name == "residual_friction";
-  });
-  for (Key<StrengthOptions>& key : keys) {
-    if (key.spec.name == "bond_length") {
-      key.spec.choices = {"none", "smaller_diameter"};
-      key.spec.help =
-          "the length by which strengths in Pa are multiplied: the diameter of the smaller disc; none: strengths are "
-          "forces";
-    }
-    if (key.spec.name == "tension")
-      key.spec.help = "a bond breaks where its normal force, and what its moment adds at the outer fibre, reach it";
-  }
-  return keys;
-}
-
 void bind_bonds(File<GrainTables>& file) {
   file.table("bonds", &GrainTables::bonds, "properties of all bonds")
       .keys({key("path", &BondsTable::path,
@@ -447,16 +391,10 @@ void bind_bonds(File<GrainTables>& file) {
   for (Key<GrainBond>& key : keys_of_bonds()) keys.push_back(std::move(key));
   file.table("bond", repeated_table, like("bonds"), "two bonded discs, and what of [bonds] differs for them")
       .described(std::move(keys));
-  bind_table_file(file, "strength");
-  file.table("strength", &GrainTables::strength, "strengths of the bonds; left out: they never break")
-      .keys(strength_keys_of_bonds());
+  bind_strength(file, &GrainTables::strength);
 }
 
 }  // namespace
-
-void resolve_bond_strengths(TomlValue& root, const std::filesystem::path& folder) {
-  resolve_strength_file(root, folder, strength_keys_of_bonds());
-}
 
 std::vector<Key<StageBonds>> stage_bond_keys() {
   std::vector<Key<StageBonds>> keys{key("gap_tolerance", &StageBonds::gap_tolerance, from(0, 1),
@@ -472,7 +410,7 @@ StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, s
   read_table(stage_bond_keys(), table, bonds);
   const GrainBond& like = bonds.like;
   if (!like.has_springs() && like.normal_dashpot == 0 && like.tangential_dashpot == 0 && like.rolling_dashpot == 0)
-    fail_at(table, "stage.bonds", "the bonds have neither dashpots nor springs", "they would tie nothing",
+    fail_at(table, "the bonds have neither dashpots nor springs", "they would tie nothing",
             "Give normal_spring or normal_dashpot here or in [bonds]");
   if (bonds.strengths) bonds.strengths->seed += stage + 1;  // the bonds of the start take the seed itself
   return bonds;
@@ -486,16 +424,15 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
   if (const TomlValue* table = root.find("bonds")) {
     const auto& path = tables.bonds.path;
     if (path)
-      read = with_key(*table, "bonds", "path", [&] { return read_bonds(*path, tables.bonds.common); });
+      read = with_key(*table, "path", [&] { return read_bonds(*path, tables.bonds.common); });
     else if (repeated(root, "bond").empty() && !bonds_later)
-      fail_at(*table, "bonds", "no grains are tied", "the table only says how",
+      fail_at(*table, "no grains are tied", "the table only says how",
               "Add [[bond]] with grains, a path, or [stage.bonds]");
   }
   for (const TomlValue& table : repeated(root, "bond")) {
     const TomlValue& two = *table.find("grains");
     if (two.items.size() != 2)
-      fail_at(two, "bond.grains",
-              fmt::format("{} are {}", two.shown(), counted(static_cast<long long>(two.items.size()), "grain")),
+      fail_at(two, fmt::format("{} are {}", two.shown(), counted(static_cast<long long>(two.items.size()), "grain")),
               "a bond ties two", "Write it like grains = [0, 1]");
     GrainBond& bond = read.bonds.emplace_back(tables.bonds.common);
     read_table(keys, table, bond);
@@ -509,17 +446,17 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
   if (tables.strength) {
     const TomlValue& table = *root.find("strength");
     if (tables.scene.bonds.empty() && !bonds_later)
-      fail_at(table, "strength", "no grains are tied", "there is nothing that could break", "Add [bonds], or [[bond]]");
+      fail_at(table, "no grains are tied", "there is nothing that could break", "Add [bonds], or [[bond]]");
     if (tables.body == Body::sphere)
-      fail_at(table, "strength", "the grains are spheres", "strengths are those of discs, N per metre of depth",
+      fail_at(table, "the grains are spheres", "strengths are those of discs, N per metre of depth",
               "Take the table out, or set grains.body = \"disc\"");
-    tables.scene.strengths = at_key(table, "strength", [&] { return bond_strengths(tables.scene, *tables.strength); });
+    tables.scene.strengths = at_key(table, [&] { return bond_strengths(tables.scene, *tables.strength); });
     for (std::size_t b = 0; b < read.strengths.size(); ++b) {
       if (const auto& own = read.strengths[b].tension) tables.scene.strengths->tension[b] = *own;
       if (const auto& own = read.strengths[b].shear) tables.scene.strengths->shear[b] = *own;
     }
   } else if (std::ranges::any_of(read.strengths, &BondRows::Strength::given)) {
-    fail_at(*root.find("bonds"), "bonds.path", "the file gives strengths, and the case has no [strength]",
+    fail_at(*root.find("bonds"), "path", "the file gives strengths, and the case has no [strength]",
             "bonds without that table never break", "Add [strength], or take the columns tension and shear out");
   }
   check_bonds(tables.scene, place);
@@ -535,9 +472,9 @@ struct CellMotionTable {
 
 std::vector<Key<CellMotionTable>> cell_motion_keys() {
   using M = CellMotionTable;
+  const std::string longer = "rate of the logarithm of the width, of the height";
   return {
-      key("xx", &M::xx, unit("1/s"), "rate of the logarithm of the width"),
-      key("yy", &M::yy, unit("1/s"), "rate of the logarithm of the height"),
+      key("xx", &M::xx, unit("1/s"), longer), key("yy", &M::yy, unit("1/s"), longer),
       key("xy", &M::xy, unit("1/s"), "rate of simple shear: the images above move along x at this rate times height"),
       key("schedule", &M::schedule, "factor of these rates; without one they are constant")};
 }
@@ -551,8 +488,8 @@ struct CellServoTable {
 
 std::vector<Key<CellServoTable>> cell_servo_keys() {
   using S = CellServoTable;
-  return {key("stress_xx", &S::stress_xx, unit("Pa"), "tension positive; the width follows it"),
-          key("stress_yy", &S::stress_yy, unit("Pa"), "tension positive; the height follows it"),
+  const std::string followed = "tension positive; the width follows that along x, the height that along y";
+  return {key("stress_xx", &S::stress_xx, unit("Pa"), followed), key("stress_yy", &S::stress_yy, unit("Pa"), followed),
           key("schedule", &S::schedule, "factor of the stresses; without one they are constant"),
           key("max_rate", &S::servo, &CellServo::max_rate, required, unit("1/s"), positive,
               "width and height never change faster, and shrink by it while nothing touches and the wanted stress is a "
@@ -562,23 +499,22 @@ std::vector<Key<CellServoTable>> cell_servo_keys() {
 }
 
 /// \param holder table of the cell
-void refuse_deformation_along_x(const TomlValue& holder, const std::string& path, const PeriodicCell& cell) {
+void refuse_deformation_along_x(const TomlValue& holder, const PeriodicCell& cell) {
   if (cell.along == PeriodicCell::Along::xy) return;
   for (const char* name : {"motion", "servo"})
     if (const TomlValue* given = holder.find(name))
-      fail_at(*given, path + "." + name, "a cell that repeats along x alone deforms", "walls bound it along y",
+      fail_at(*given, "a cell that repeats along x alone deforms", "walls bound it along y",
               "Let periodic = \"xy\", or move the walls");
 }
 
 /// The rates that a table gives; a component with a rate keeps no stress.
-void take_motion(const TomlValue& table, const std::string& path, std::span<const NamedSchedule> schedules,
-                 PeriodicCell& cell) {
+void take_motion(const TomlValue& table, std::span<const NamedSchedule> schedules, PeriodicCell& cell) {
   CellMotionTable read;
   read_table(cell_motion_keys(), table, read);
   const auto take = [&](const std::optional<double>& value, Schedule& rate,
                         std::optional<Schedule> CellServo::*stress) {
     if (!value) return;
-    rate = *value == 0 ? Schedule{} : scheduled(table, path, *value, schedules);
+    rate = *value == 0 ? Schedule{} : scheduled(table, *value, schedules);
     if (stress != nullptr && cell.servo) ((*cell.servo).*stress).reset();
   };
   take(read.xx, cell.rate_xx, &CellServo::stress_xx);
@@ -588,16 +524,15 @@ void take_motion(const TomlValue& table, const std::string& path, std::span<cons
 }
 
 /// The stresses that a table gives, beside those that the cell keeps.
-void take_servo(const TomlValue& table, const std::string& path, std::span<const NamedSchedule> schedules,
-                PeriodicCell& cell) {
+void take_servo(const TomlValue& table, std::span<const NamedSchedule> schedules, PeriodicCell& cell) {
   CellServoTable read;
   read_table(cell_servo_keys(), table, read);
   if (cell.servo) {  // stresses that are not named stay as they were
     read.servo.stress_xx = cell.servo->stress_xx, read.servo.stress_yy = cell.servo->stress_yy;
     read.servo.goes_on_xx = !read.stress_xx, read.servo.goes_on_yy = !read.stress_yy;
   }
-  if (read.stress_xx) read.servo.stress_xx = scheduled(table, path, *read.stress_xx, schedules);
-  if (read.stress_yy) read.servo.stress_yy = scheduled(table, path, *read.stress_yy, schedules);
+  if (read.stress_xx) read.servo.stress_xx = scheduled(table, *read.stress_xx, schedules);
+  if (read.stress_yy) read.servo.stress_yy = scheduled(table, *read.stress_yy, schedules);
   cell.servo = read.servo;
 }
 
@@ -636,12 +571,11 @@ std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<cons
   if (cell && cell->servo) cell->servo->goes_on_xx = cell->servo->goes_on_yy = true;
   const TomlValue* given = stage.find("cell");
   if (given == nullptr) return cell;
-  if (!cell)
-    fail_at(*given, "stage.cell", "the case has no [cell]", "there is nothing to deform", "Add [cell], or remove it");
-  refuse_deformation_along_x(*given, "stage.cell", *cell);
-  cell->place = given->where() + ": stage.cell";
-  if (const TomlValue* motion = given->find("motion")) take_motion(*motion, "stage.cell.motion", schedules, *cell);
-  if (const TomlValue* servo = given->find("servo")) take_servo(*servo, "stage.cell.servo", schedules, *cell);
+  if (!cell) fail_at(*given, "the case has no [cell]", "there is nothing to deform", "Add [cell], or remove it");
+  refuse_deformation_along_x(*given, *cell);
+  cell->place = given->place();
+  if (const TomlValue* motion = given->find("motion")) take_motion(*motion, schedules, *cell);
+  if (const TomlValue* servo = given->find("servo")) take_servo(*servo, schedules, *cell);
   return cell;
 }
 
@@ -650,24 +584,23 @@ void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedul
   if (given == nullptr) return;
   PeriodicCell cell = *tables.cell_table;
   if (cell.along == PeriodicCell::Along::xy && given->find("height") == nullptr)
-    fail_at(*given, "cell.height", "missing key", "a cell that repeats along xy has one", "Add height = ... to [cell]");
+    fail_at(*given, "height", "missing key", "a cell that repeats along xy has one", "Add height = ... to [cell]");
   if (const TomlValue* measures = root.find("measures"))
-    fail_at(*measures, "measures", "a run in a periodic cell measures the bodies in a box",
+    fail_at(*measures, "a run in a periodic cell measures the bodies in a box",
             "a branch across a side of the cell would be taken for one through it",
             "Remove it: the histories have stress, void ratio and coordination number of the cell");
   if (tables.body == Body::sphere && cell.along == PeriodicCell::Along::xy)
-    fail_at(*given, "cell", "a cell that repeats along xy holds spheres",
+    fail_at(*given, "a cell that repeats along xy holds spheres",
             "its stress is by area, and a plane of spheres has no thickness",
             "Let body = \"disc\", or periodic = \"x\"");
-  refuse_deformation_along_x(*given, "cell", cell);
-  cell.place = given->where() + ": cell";
+  refuse_deformation_along_x(*given, cell);
+  cell.place = given->place();
   if (const TomlValue* motion = given->find("motion")) {
-    take_motion(*motion, "cell.motion", schedules, cell);
+    take_motion(*motion, schedules, cell);
     if (!cell.has_rates())
-      fail_at(*motion, "cell.motion", "all rates are 0", "nothing would move",
-              "Give xx, yy or xy, or remove the table");
+      fail_at(*motion, "all rates are 0", "nothing would move", "Give xx, yy or xy, or remove the table");
   }
-  if (const TomlValue* servo = given->find("servo")) take_servo(*servo, "cell.servo", schedules, cell);
+  if (const TomlValue* servo = given->find("servo")) take_servo(*servo, schedules, cell);
   tables.scene.cell = cell;
 }
 
@@ -682,23 +615,7 @@ void bind_bodies(File<GrainTables>& file) {
 }
 
 void bind_run(File<GrainTables>& file) {
-  using T = GrainTables;
-  file.table("run", required, "how long and in which steps")
-      .keys({key_in<T>("duration", &GrainCase::duration, optional, run_duration,
-                       "length of the run; required without [[stage]]"),
-             key_in<T>("time_step", &GrainCase::step, &GrainStepOptions::time_step, run_time_step,
-                       "auto: the shortest contact over steps_per_contact"),
-             key_in<T>("gravity", &GrainCase::scene, &GrainScene::gravity, run_gravity),
-             key_in<T>(
-                 "steps_per_contact", &GrainCase::step, &GrainStepOptions::steps_per_contact, range({.low = 2}),
-                 not_beside({"time_step"}, "each says how long a step is"),
-                 "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is omega "
-                 "dt = 1) for exact_flow"),
-             key_in<T>(
-                 "integrator", &GrainCase::options, &GrainOptions::integrator, optional,
-                 "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
-                 "creep; velocity_verlet: second order, as LAMMPS steps")});
-  bind_motion(file, BodyFamily::colliding, &GrainCase::probes);
+  bind_motion(file, &GrainTables::run, &GrainCase::probes);
   bind_stages(file);
   using M = MeasureOptions;
   file.table("measures", &GrainCase::measures, "quantities measured on the bodies in a box")
@@ -737,19 +654,20 @@ std::vector<Key<GrainTable>> grain_keys() {
           key("velocity", &G::grain, &Grain::velocity, unit("m/s")),
           key("spin", &G::grain, &Grain::spin, unit("rad/s"), "counter-clockwise"),
           key("angle", &G::grain, &Grain::angle, unit("rad")),
-          key("density", &G::density, unit("kg/m³"), positive, "instead of that of [grains]"),
+          key("density", &G::density, unit("kg/m³"), positive, "in place of that of [grains]"),
           key("group", &G::group, "for [[collisions.pair]] and [[probe]]")};
 }
 
 const File<GrainTables>& grain_file() {
   static const File<GrainTables> file = [] {
-    File<GrainTables> made(case_schema, "case file of colliding bodies");
+    File<GrainTables> made(case_schema, "case file of colliding bodies", CaseKind::colliding);
+    made.ask(kinds_with);
     bind_bodies(made);
     bind_bonds(made);
     bind_cell(made);
     bind_collisions(made);
     bind_run(made);
-    made.table("output", &GrainTables::output, completed, "what is written with --out").keys(output_keys());
+    bind_output(made, &GrainCase::output);
     return made;
   }();
   return file;

@@ -50,6 +50,7 @@ struct BondsTable {
 struct GrainTables : GrainCase, MotionTables {
   CommonBodyTable common;
   std::vector<GrainTable> grain_tables;
+  RunTable run;
   CollisionTable collisions;
   std::optional<SpringsTable> springs;
   BondsTable bonds;
@@ -78,19 +79,18 @@ std::vector<Key<GrainTable>> grain_keys();
 /// Stands for all walls where a group and a wall meet.
 inline constexpr const char* name_of_all_walls = "walls";
 /// \throws Error (bad_input) with line and key: a name that is empty, not plain, or that of all walls
-void check_group_name(const TomlValue& group, const std::string& key);
+void check_group_name(const TomlValue& group);
 /// Names by which pairs are chosen mean one thing each.
-/// \param holder the case, or a stage; \param path of its walls
+/// \param holder the case, or a stage
 /// \throws Error (bad_input) with line and key: a wall that is called like a group, or like all walls
-void check_names_of_walls(const TomlValue& holder, const std::string& path, const std::vector<std::string>& groups);
+void check_names_of_walls(const TomlValue& holder, const std::vector<std::string>& groups);
 
 /// Build the bodies of [grains] and [[grain]], or of those of a stage.
-/// \param holder the table that has them; \param prefix of its path: "", "stage."
+/// \param holder the table that has them: the case, a stage
 /// \param common, read what is read of them
 /// \throws Error (bad_input) with line and key: no density, a file that is not a table of grains
-GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const std::string& prefix,
-                    const CommonBodyTable& common, const std::vector<GrainTable>& read, GrainShapes& shapes,
-                    const GrainTables& tables);
+GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const CommonBodyTable& common,
+                    const std::vector<GrainTable>& read, GrainShapes& shapes, const GrainTables& tables);
 
 /// Set the bodies of the case.
 /// \return group of each grain
@@ -99,15 +99,9 @@ std::vector<std::string> complete_bodies(const TomlValue& root, GrainShapes& sha
 
 /// Set the kinds of grains and walls, and the contact properties of every two kinds.
 /// \param groups of each grain
-/// \param stage whose tables have changed those of the case; null: none
 /// \throws Error (bad_input) with line and key as set_kinds; also: wave speeds with several densities,
 ///         [springs] beside a stiffness of [collisions], or that no grain has the density of
-void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables,
-                         const TomlValue* stage = nullptr);
-
-/// The table of a strength file takes the place of its name.
-/// \throws Error (bad_input) as resolve_strength_file; with a key that bonds of colliding bodies have not
-void resolve_bond_strengths(TomlValue& root, const std::filesystem::path& folder);
+void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
 
 /// The bonds of the file, then those of the case, and their strengths.
 /// \param tables with bodies

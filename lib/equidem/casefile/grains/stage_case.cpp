@@ -36,12 +36,11 @@ std::vector<Key<ShakingOptions>> shaking_keys() {
           key("duration", &S::duration, unit("s"), positive, "duration of whole cycles")};
 }
 
-Shaking read_shaking(const TomlValue& table, const std::string& path, const ShakingOptions& given,
-                     std::optional<double> duration) {
+Shaking read_shaking(const TomlValue& table, const ShakingOptions& given, std::optional<double> duration) {
   if (!duration && !given.cycles && !given.duration)
-    fail_at(table, path, "neither cycles nor duration is given", "the length of the stage is not given in seconds",
+    fail_at(table, "neither cycles nor duration is given", "the length of the stage is not given in seconds",
             "Give cycles or duration");
-  return at_key(table, path, [&] { return shaking_of(given, duration.value_or(INFINITY)); });
+  return at_key(table, [&] { return shaking_of(given, duration.value_or(INFINITY)); });
 }
 
 /// [[stage.remove]]: which bodies; of [[stage.rename]] too.
@@ -62,9 +61,9 @@ std::vector<Key<BodyChoiceTable>> choice_keys() {
           key("box", &C::box, unit("m"), "those with their centre inside, where the stage begins; left out: anywhere")};
 }
 
-void check_no_wall(const TomlValue& group, const std::string& key, const std::vector<Wall>& walls) {
+void check_no_wall(const TomlValue& group, const std::vector<Wall>& walls) {
   if (std::ranges::find(walls, group.text, &Wall::name) == walls.end()) return;
-  fail_at(group, key, fmt::format("a wall and a group of grains are both called '{}'", group.text),
+  fail_at(group, fmt::format("a wall and a group of grains are both called '{}'", group.text),
           "[[collisions.pair]] chooses them by name", "Give the group another name");
 }
 
@@ -100,15 +99,15 @@ class StagePopulation {
     renamed_.clear();
     for (const TomlValue& table : repeated(stage, "remove")) {
       read_table(choice_keys(), table, removed_.emplace_back());
-      check_choice(table, "stage.remove", removed_.back());
+      check_choice(table, removed_.back());
     }
     for (const TomlValue& table : repeated(stage, "rename")) {
       BodyRenamingTable renaming;
       read_table(renaming_keys(), table, renaming);
       if (renaming.wall) continue;
-      check_choice(table, "stage.rename", renaming.which);
-      check_group_name(*table.find("to"), "stage.rename.to");
-      check_no_wall(*table.find("to"), "stage.rename.to", tables.scene.walls);
+      check_choice(table, renaming.which);
+      check_group_name(*table.find("to"));
+      check_no_wall(*table.find("to"), tables.scene.walls);
       for (std::size_t k = 0, count = grains_.size(); k < count; ++k)
         if (!renaming.which.group || *renaming.which.group == groups_[k])
           add(numbers_[k], Grain(grains_[k]), renaming.to);
@@ -120,9 +119,9 @@ class StagePopulation {
     std::vector<GrainTable> read;
     for (const TomlValue& table : repeated(stage, "grain")) {
       read_table(grain_keys(), table, read.emplace_back());
-      check_no_wall(*table.find("group"), "stage.grain.group", tables.scene.walls);
+      check_no_wall(*table.find("group"), tables.scene.walls);
     }
-    const GrainRows rows = bodies_of(root, stage, "stage.", common, read, shapes, tables);
+    const GrainRows rows = bodies_of(root, stage, common, read, shapes, tables);
     for (std::size_t k = 0; k < rows.grains.size(); ++k) {
       add(first_groups_.size(), rows.grains[k], rows.groups[k]);
       first_groups_.push_back(rows.groups[k]);
@@ -160,16 +159,16 @@ class StagePopulation {
     groups_.push_back(group);
     numbers_.push_back(number);
   }
-  void check_choice(const TomlValue& table, const std::string& path, const BodyChoiceTable& choice) const {
+  void check_choice(const TomlValue& table, const BodyChoiceTable& choice) const {
     if (!choice.group && !choice.box)
-      fail_at(table, path, "neither a group nor a box is given", "all bodies would be chosen",
-              path == "stage.rename" ? "Give group = ... or box = [x_min, y_min, x_max, y_max], or the name of a wall"
-                                     : "Give group = ... or box = [x_min, y_min, x_max, y_max]");
-    if (choice.box) check_box(*table.find("box"), path + ".box", choice.box->low, choice.box->high);
+      fail_at(table, "neither a group nor a box is given", "all bodies would be chosen",
+              table.path == "stage.rename"
+                  ? "Give group = ... or box = [x_min, y_min, x_max, y_max], or the name of a wall"
+                  : "Give group = ... or box = [x_min, y_min, x_max, y_max]");
+    if (choice.box) check_box(*table.find("box"), choice.box->low, choice.box->high);
     if (!choice.group || std::ranges::find(groups_, *choice.group) != groups_.end()) return;
     const auto meant = nearest(*choice.group, groups_);
-    fail_at(*table.find("group"), path + ".group",
-            fmt::format("no grain has the group {} until then", table.find("group")->shown()), "",
+    fail_at(*table.find("group"), fmt::format("no grain has the group {} until then", table.find("group")->shown()), "",
             meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name a group of the grains");
   }
   [[nodiscard]] BodyChoice choice_of(const BodyChoiceTable& table, const std::vector<Grain>& grains) const {
@@ -200,15 +199,9 @@ struct StageWallTable {
 /// The keys of a wall, none of them required: a wall that is there gets another motion.
 std::vector<Key<StageWallTable>> stage_wall_keys() {
   using W = StageWallTable;
-  std::vector<Key<W>> keys = keys_of_member(&W::wall, wall_keys(BodyFamily::colliding));
+  std::vector<Key<W>> keys = keys_of_member(&W::wall, wall_keys());
   for (Key<W>& key : keys) {
-    if (key.spec.name == "name") {
-      key.spec.help = "of a wall that is there: its motion in this stage, none where none is given; or of a new wall";
-    } else if (key.spec.name == "shaken") {
-      key.spec.help = "false: [stage.shaking] does not move it, in later stages neither";
-    } else if (key.spec.is_required()) {
-      key.spec.fallback = KeySpec::none;
-    }
+    if (key.spec.name != "name" && key.spec.is_required()) key.spec.fallback = KeySpec::none;
   }
   keys.push_back(key("removed", &W::removed, optional, "true: the wall is taken away"));
   keys.push_back(key("velocity", &W::velocity, unit("m/s"),
@@ -248,7 +241,7 @@ class StageWalls {
   ///         that a wall has or had, a wall that is renamed twice or renamed and removed, one that is there with a
   ///         place
   void read(const TomlValue& stage, std::span<const NamedSchedule> schedules) {
-    check_names(stage, "wall", "stage.");
+    check_names(stage, "wall");
     renamed_.clear();
     for (Wall& wall : walls_) {
       wall.move_x = wall.move_y = {};
@@ -263,10 +256,9 @@ class StageWalls {
     }
     for (const TomlValue& table : repeated(stage, "wall"))
       if (const TomlValue* removed = table.find("removed"); removed != nullptr && removed->boolean)
-        check_servos_of_others(table, table.find("name")->text, "stage.wall", "removed");
+        check_servos_of_others(table, table.find("name")->text, "removed");
     for (const TomlValue& table : repeated(stage, "rename"))
-      if (const TomlValue* wall = table.find("wall"))
-        check_servos_of_others(table, wall->text, "stage.rename", "renamed");
+      if (const TomlValue* wall = table.find("wall")) check_servos_of_others(table, wall->text, "renamed");
     for (const Wall& wall : walls_)
       if (find_named(all_, wall.name) == all_.end()) all_.push_back(wall);
   }
@@ -279,9 +271,9 @@ class StageWalls {
   [[nodiscard]] const std::vector<Wall>& all() const { return all_; }
 
  private:
-  [[noreturn]] void refuse_unknown(const TomlValue& name, const char* key, const char* what) const {
+  [[noreturn]] void refuse_unknown(const TomlValue& name, const char* what) const {
     const auto meant = nearest(name.text, names_of(walls_));
-    fail_at(name, key, fmt::format("no wall {} stands in the stage before", name.shown()), "",
+    fail_at(name, fmt::format("no wall {} stands in the stage before", name.shown()), "",
             meant ? fmt::format("Did you mean \"{}\"?", *meant) : fmt::format("{} a wall that stands there", what));
   }
   void rename(const TomlValue& table) {
@@ -290,14 +282,14 @@ class StageWalls {
     if (!read.wall) return;
     const auto is_it = [&](const WallRenaming& other) { return other.from == *read.wall || other.to == *read.wall; };
     if (const auto other = std::ranges::find_if(renamed_, is_it); other != renamed_.end())
-      fail_at(*table.find("wall"), "stage.rename.wall",
+      fail_at(*table.find("wall"),
               fmt::format("wall '{}' gets the name '{}' and then another one", other->from, other->to),
               "it has one name in a stage", "Rename it once");
     const auto at = find_named(walls_, *read.wall);
-    if (at == walls_.end()) refuse_unknown(*table.find("wall"), "stage.rename.wall", "Rename");
-    check_plain_name(*table.find("to"), "stage.rename.to", "a wall", "it stands in the names of columns");
+    if (at == walls_.end()) refuse_unknown(*table.find("wall"), "Rename");
+    check_plain_name(*table.find("to"), "a wall", "it stands in the names of columns");
     if (find_named(all_, read.to) != all_.end())
-      fail_at(*table.find("to"), "stage.rename.to",
+      fail_at(*table.find("to"),
               fmt::format("wall '{}' is called '{}' from now on, and a wall has or had that name", *read.wall, read.to),
               "histories and contacts go by the names of walls", "Give it another name");
     at->name = read.to;
@@ -310,11 +302,10 @@ class StageWalls {
     const TomlValue* removed = table.find("removed");
     for (const WallRenaming& renaming : renamed_) {
       if ((name == renaming.from || name == renaming.to) && removed != nullptr && removed->boolean)
-        fail_at(table, "stage.wall", fmt::format("wall '{}' is renamed and removed in one stage", renaming.from),
+        fail_at(table, fmt::format("wall '{}' is renamed and removed in one stage", renaming.from),
                 "a wall that is gone has no name", "Remove one of them");
       if (name == renaming.from)
-        fail_at(*table.find("name"), "stage.wall.name",
-                fmt::format("wall '{}' is called '{}' in this stage", renaming.from, renaming.to),
+        fail_at(*table.find("name"), fmt::format("wall '{}' is called '{}' in this stage", renaming.from, renaming.to),
                 "[[stage.rename]] comes before [[stage.wall]]", fmt::format("Write name = \"{}\"", renaming.to));
     }
   }
@@ -324,11 +315,10 @@ class StageWalls {
     const std::string& name = read.wall.wall.name;
     const auto at = find_named(walls_, name);
     if (read.removed) {
-      if (at == walls_.end()) refuse_unknown(*table.find("name"), "stage.wall.name", "Remove");
+      if (at == walls_.end()) refuse_unknown(*table.find("name"), "Remove");
       for (const TomlEntry& entry : table.entries)
         if (entry.name != "name" && entry.name != "removed" && !is_default(entry))
-          fail_at(entry.value, fmt::format("stage.wall.{}", entry.name),
-                  fmt::format("wall '{}' is removed, and {} is given", name, entry.name),
+          fail_at(entry.value, fmt::format("wall '{}' is removed, and {} is given", name, entry.name),
                   "nothing counts of a wall that is gone", "Remove one of them");
       walls_.erase(at);
       return;
@@ -337,40 +327,37 @@ class StageWalls {
     if (at != walls_.end()) {
       for (const char* key : {"shape", "point", "normal", "end"})
         if (const TomlValue* given = table.find(key); given != nullptr && !is_default({key, *given}))
-          fail_at(*given, fmt::format("stage.wall.{}", key), fmt::format("wall '{}' is there already", name),
-                  "it stays where it is when a stage begins", "Leave the key out, or give the new wall another name");
+          fail_at(*given, fmt::format("wall '{}' is there already", name), "it stays where it is when a stage begins",
+                  "Leave the key out, or give the new wall another name");
       wall = *at;
       wall.move_x = wall.move_y = {};
       wall.servo.reset();
       read.wall.wall = wall;
-      set_motion(table, "stage.wall", read.wall, schedules, wall);
+      set_motion(table, read.wall, schedules, wall);
       if (table.find("displacement") != nullptr)
-        with_key(table, "stage.wall", table.find("schedule") != nullptr ? "schedule" : "displacement",
-                 [&] { check_start(wall); });
+        with_key(table, table.find("schedule") != nullptr ? "schedule" : "displacement", [&] { check_start(wall); });
     } else {
       if (find_named(all_, name) != all_.end())
-        fail_at(*table.find("name"), "stage.wall.name",
-                fmt::format("wall '{}' is new, and an earlier one had that name", name),
+        fail_at(*table.find("name"), fmt::format("wall '{}' is new, and an earlier one had that name", name),
                 "histories and contacts go by the names of walls", "Give the new wall another name");
       for (const char* key :
            read.wall.wall.shape == Wall::Shape::line ? std::array{"point", "normal"} : std::array{"point", "end"})
         if (table.find(key) == nullptr)
-          fail_at(table, fmt::format("stage.wall.{}", key), "missing key",
+          fail_at(table, key, "missing key",
                   fmt::format("'{}' is a new wall, and none of that name stands in the stage before", name),
                   fmt::format("Add {} = ... to [[stage.wall]], or correct the name", key));
-      wall = wall_of(table, "stage.wall", read.wall, schedules);
+      wall = wall_of(table, read.wall, schedules);
     }
     if (read.velocity) move_at(wall, *read.velocity);
-    read_servo(table, "stage.wall", schedules, wall);
+    read_servo(table, schedules, wall);
     at == walls_.end() ? walls_.push_back(wall) : void(*at = wall);
   }
-  void check_servos_of_others(const TomlValue& table, const std::string& name, const char* path,
-                              const char* done) const {
+  void check_servos_of_others(const TomlValue& table, const std::string& name, const char* done) const {
     for (const Wall& wall : walls_) {
       if (!wall.servo) continue;
       const Servo& servo = *wall.servo;
       if (servo.mirror != name && servo.between[0] != name && servo.between[1] != name) continue;
-      fail_at(table, path, fmt::format("wall '{}' is {}", name, done),
+      fail_at(table, fmt::format("wall '{}' is {}", name, done),
               fmt::format("the servo of wall '{}' {}", wall.name,
                           servo.mirror == name ? "moves it as its mirror" : "measures its length to it"),
               fmt::format("Give '{}' in [[stage.wall]] of this stage too, without that servo or with another one",
@@ -385,8 +372,8 @@ class StageWalls {
 
 /// The walls move by a shaking. \param shakes, place_of of the number of a wall
 template <class Shakes, class Place>
-void shake_walls(const TomlValue& table, const std::string& path, const Shaking& shaking, std::span<Wall> walls,
-                 const Shakes& shakes, const Place& place_of) {
+void shake_walls(const TomlValue& table, const Shaking& shaking, std::span<Wall> walls, const Shakes& shakes,
+                 const Place& place_of) {
   bool any = false;
   for (std::size_t k = 0; k < walls.size(); ++k) {
     if (!shakes(k)) continue;
@@ -394,7 +381,7 @@ void shake_walls(const TomlValue& table, const std::string& path, const Shaking&
     with_place(place_of(k), [&] { shake(walls.subspan(k, 1), shaking.direction, shaking.displacement); });
   }
   if (!any)
-    fail_at(table, path, "there is no wall that shakes", "a box moves by its walls",
+    fail_at(table, "there is no wall that shakes", "a box moves by its walls",
             walls.empty() ? "Add a [[wall]]" : "Leave out shaken = false where a wall belongs to the box");
 }
 
@@ -418,8 +405,8 @@ std::vector<Key<UntilTable>> until_keys() {
           "change of the distance of two walls over that at the start of the stage; or of a strain of the cell"),
       key("component", &U::end, &E::of_cell, only_with({"strain"}, way), not_beside({"from"}, way),
           "of the strain of the periodic cell, as in the histories"),
-      key("from", &U::from, only_with({"to"}, way), "one of the two walls"),
-      key("to", &U::to, only_with({"strain"}, way), "and the other"),
+      key("from", &U::from, only_with({"to"}, way), "the two walls"),
+      key("to", &U::to, only_with({"strain"}, way), "the two walls"),
       key("displacement", &U::end, &E::displacement, optional, unit("m"), positive,
           only_with({"wall"}, "a wall is named that moves"), "way of a wall since the start of the stage"),
       key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
@@ -432,16 +419,16 @@ std::optional<Shaking> shake_stage(const TomlValue& stage, const std::optional<d
   if (table == nullptr) return {};
   ShakingOptions read;
   read_table(shaking_keys(), *table, read);
-  const Shaking shaking = read_shaking(*table, "stage.shaking", read, duration);
+  const Shaking shaking = read_shaking(*table, read, duration);
   for (const Wall& wall : walls)
     for (const Wall& owner : walls)
       if (standing.shakes(wall) && owner.servo && (owner.name == wall.name || owner.servo->mirror == wall.name) &&
           std::abs(dot(owner.servo->direction, shaking.direction)) > 1e-9)
-        fail_at(*table, "stage.shaking", fmt::format("wall '{}' shakes along the direction of its servo", wall.name),
+        fail_at(*table, fmt::format("wall '{}' shakes along the direction of its servo", wall.name),
                 "it cannot keep a force and a motion", "Shake across it, or give the wall shaken = false");
   shake_walls(
-      *table, "stage.shaking", shaking, walls, [&](std::size_t k) { return standing.shakes(walls[k]); },
-      [&](std::size_t) { return fmt::format("{}: stage.shaking", table->where()); });
+      *table, shaking, walls, [&](std::size_t k) { return standing.shakes(walls[k]); },
+      [&](std::size_t) { return table->place(); });
   return shaking;
 }
 
@@ -453,26 +440,25 @@ StageEnd end_of_stage(const TomlValue& stage, const std::vector<Wall>& walls, co
   StageEnd& end = read.end;
   const auto named = [&](const char* key, const std::optional<std::string>& name) {
     if (!name || find_named(walls, *name) != walls.end()) return name.value_or("");
-    fail_at(*table->find(key), fmt::format("stage.until.{}", key), fmt::format("there is no wall '{}'", *name),
-            "the stage ends by it", "Name a wall that stands in this stage");
+    fail_at(*table->find(key), fmt::format("there is no wall '{}'", *name), "the stage ends by it",
+            "Name a wall that stands in this stage");
   };
   if (end.of_cell && !(cell && cell->along == PeriodicCell::Along::xy))
-    fail_at(*table->find("component"), "stage.until.component", "there is no cell that repeats along x and y",
-            "its strain ends the stage", "Name two walls by from and to, or add [cell]");
+    fail_at(*table->find("component"), "there is no cell that repeats along x and y", "its strain ends the stage",
+            "Name two walls by from and to, or add [cell]");
   end.walls = {named("from", read.from), named("to", read.to)};
   end.wall = named("wall", read.wall);
   if (!end.given())
-    fail_at(*table, "stage.until", "nothing is given that ends the stage", "its duration ends it without that table",
+    fail_at(*table, "nothing is given that ends the stage", "its duration ends it without that table",
             "Give kinetic, unbalanced, strain or displacement, or leave it out");
   if (end.strain > 0 && !end.of_cell && end.walls[0] == end.walls[1])
-    fail_at(*table->find("to"), "stage.until.to", "both walls are the same",
-            "the distance of a wall to itself does not change", "Name two walls");
+    fail_at(*table->find("to"), "both walls are the same", "the distance of a wall to itself does not change",
+            "Name two walls");
   if (end.strain > 0 && !end.of_cell) {
     const Wall &from = *find_named(walls, end.walls[0]), &to = *find_named(walls, end.walls[1]);
     const bool lines = from.shape == Wall::Shape::line && to.shape == Wall::Shape::line;
     if (!lines || norm(from.normal + to.normal) > 1e-9 || dot(to.point - from.point, from.normal) == 0)
-      fail_at(*table->find("to"), "stage.until.to",
-              fmt::format("the walls '{}' and '{}' do not face each other", from.name, to.name),
+      fail_at(*table->find("to"), fmt::format("the walls '{}' and '{}' do not face each other", from.name, to.name),
               "the strain is the change of the distance of two parallel lines", "Name two lines with opposite normals");
   }
   return end;
@@ -496,8 +482,7 @@ void check_stage_pairs(const std::vector<TomlValue>& pairs, const std::vector<Wa
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     for (std::size_t earlier = 0; earlier < k; ++earlier)
       if (names(pairs[earlier]) == names(pairs[k]))
-        fail_at(pairs[k], "stage.pair",
-                fmt::format("'{}' and '{}' are a pair twice", names(pairs[k]).first, names(pairs[k]).second),
+        fail_at(pairs[k], fmt::format("'{}' and '{}' are a pair twice", names(pairs[k]).first, names(pairs[k]).second),
                 "two bodies meet in one way", "Keep one of them");
     const TomlValue& with = *pairs[k].find("with");
     const auto stands = [&](const StageCase& stage) {
@@ -506,8 +491,7 @@ void check_stage_pairs(const std::vector<TomlValue>& pairs, const std::vector<Wa
     if (find_named(all, with.text) == all.end() || std::ranges::any_of(to_come, stands)) continue;
     const std::vector<WallRenaming>& renamed = to_come.front().renamed_walls;
     const auto renaming = std::ranges::find(renamed, with.text, &WallRenaming::from);
-    fail_at(with, "stage.pair.with", fmt::format("no wall '{}' stands in this stage or a later one", with.text),
-            "nothing would meet it",
+    fail_at(with, fmt::format("no wall '{}' stands in this stage or a later one", with.text), "nothing would meet it",
             renaming != renamed.end() ? fmt::format("Write with = \"{}\", its new name", renaming->to)
                                       : "Name a wall that stands, or remove the pair");
   }
@@ -542,36 +526,33 @@ bool change_contacts(const TomlValue& stage, TomlValue& root, PairOptions& conta
 
 /// Motions that a case in stages gives in its stages alone.
 void refuse_beside_stages(const TomlValue& root) {
-  const auto refuse = [](const TomlValue* table, const char* name, const char* path, const char* problem,
-                         const char* remedy) {
+  const auto refuse = [](const TomlValue* table, const char* name, const char* problem, const char* remedy) {
     const TomlValue* given = table == nullptr ? nullptr : table->find(name);
     if (given != nullptr)
-      fail_at(*given, path, problem, "the run is in stages, and schedules count from the start of a stage", remedy);
+      fail_at(*given, problem, "the run is in stages, and schedules count from the start of a stage", remedy);
   };
   for (const TomlValue& wall : repeated(root, "wall")) {
-    refuse(&wall, "displacement", "wall.displacement", "a wall has a motion outside of the stages",
+    refuse(&wall, "displacement", "a wall has a motion outside of the stages",
            "Give it in [[stage.wall]] of its stage");
-    refuse(wall.find("servo"), "schedule", "wall.servo.schedule", "a servo has a schedule outside of the stages",
+    refuse(wall.find("servo"), "schedule", "a servo has a schedule outside of the stages",
            "Give it in [[stage.wall]] of its stage");
   }
   if (const TomlValue* cell = root.find("cell")) {
-    refuse(cell, "motion", "cell.motion", "the cell has rates outside of the stages",
-           "Give them in [stage.cell.motion]");
-    refuse(cell->find("servo"), "schedule", "cell.servo.schedule", "stresses have a schedule outside of the stages",
+    refuse(cell, "motion", "the cell has rates outside of the stages", "Give them in [stage.cell.motion]");
+    refuse(cell->find("servo"), "schedule", "stresses have a schedule outside of the stages",
            "Give it in [stage.cell.servo]");
   }
-  refuse(&root, "shaking", "shaking", "a run in stages has [shaking]", "Give [stage.shaking] in its stage");
+  refuse(&root, "shaking", "a run in stages has [shaking]", "Give [stage.shaking] in its stage");
 }
 
 }  // namespace
 
 void complete_shaking(const TomlValue& root, GrainTables& tables) {
   const TomlValue& table = *root.find("shaking");
-  tables.shaking = read_shaking(table, "shaking", *tables.shaking_table, tables.duration);
+  tables.shaking = read_shaking(table, *tables.shaking_table, tables.duration);
   shake_walls(
-      table, "shaking", *tables.shaking, tables.scene.walls,
-      [&](std::size_t k) { return tables.wall_tables[k].shaken; },
-      [&](std::size_t k) { return fmt::format("{}: wall", repeated(root, "wall")[k].where()); });
+      table, *tables.shaking, tables.scene.walls, [&](std::size_t k) { return tables.wall_tables[k].shaken; },
+      [&](std::size_t k) { return repeated(root, "wall")[k].place(); });
 }
 
 void bind_stages(File<GrainTables>& file) {
@@ -595,7 +576,7 @@ void bind_stages(File<GrainTables>& file) {
   bind_stage_cell(file);
   file.table("stage.remove", repeated_table, "bodies that are taken away where the stage begins, their bonds too")
       .described(choice_keys());
-  file.table("stage.rename", repeated_table,
+  file.table("stage.rename", repeated_table, like("stage.remove"),
              "bodies that get another group, after those that go; or a wall another name")
       .described(renaming_keys());
   file.table("stage.grains", like("grains"), "bodies of a file that come where the stage begins")
@@ -606,7 +587,7 @@ void bind_stages(File<GrainTables>& file) {
              "contacts of two groups, or of a group and a wall, from now on")
       .described(pair_keys());
   file.table("stage.wall", repeated_table, like("wall"),
-             "a wall that is new, goes, or moves otherwise; without a motion it stands")
+             "a wall that is there, which stands without a motion of its own in the stage, goes or moves; or a new one")
       .described(stage_wall_keys());
   file.table("stage.wall.servo", like("wall.servo"), "its schedule begins with the stage").described(servo_keys());
 }
@@ -618,10 +599,10 @@ std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedu
   std::optional<PeriodicCell> cell = tables.scene.cell;
   for (std::size_t k = 0; k < tables.stages.size(); ++k) {
     const TomlValue& table = root.find("stage")->items[k];
-    check_plain_name(*table.find("name"), "stage.name", "a stage", "it stands in tables");
+    check_plain_name(*table.find("name"), "a stage", "it stands in tables");
     walls.read(table, schedules);
     if (k == 0 && !walls.renamed().empty())
-      fail_at(table, "stage.rename", fmt::format("the first stage renames the wall '{}'", walls.renamed()[0].from),
+      fail_at(table, "rename", fmt::format("the first stage renames the wall '{}'", walls.renamed()[0].from),
               "it begins with the walls of the case", "Give it that name in [[wall]], or rename it in a later stage");
     cell = cell_of_stage(table, schedules, cell);
     StageCase& stage = tables.stages[k];
@@ -648,13 +629,12 @@ void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::
     TomlValue& table = root.find("stage")->items[k];
     const bool other_bodies = population.read(root, table, folder, shapes, changed);
     if (other_bodies && k == 0)
-      fail_at(table, "stage", "the first stage changes the grains", "it begins with those of the case",
+      fail_at(table, "the first stage changes the grains", "it begins with those of the case",
               "Give the case those grains, or do it in a later stage");
     changed.scene.grains = population.grains();
     check_stage_pairs(repeated(table, "pair"), all, std::span(tables.stages).subspan(k));
     const bool other_contacts = change_contacts(table, contacts_now, changed.collisions.contact);
-    if (other_contacts || other_bodies || k == 0)
-      complete_collisions(contacts_now, population.groups(), changed, &table);
+    if (other_contacts || other_bodies || k == 0) complete_collisions(contacts_now, population.groups(), changed);
     StageCase& stage = tables.stages[k];
     stage.bodies = population.changes(changed.scene.grains);
     std::vector<Wall> walls = std::move(stage.scene.walls);
@@ -671,8 +651,8 @@ void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::
   tables.scene = tables.stages.front().scene;
   tables.contacts = tables.stages.front().contacts;
   tables.densities = changed.densities;
-  check_names_of_walls(root, "wall", population.groups());
-  for (const TomlValue& stage : repeated(root, "stage")) check_names_of_walls(stage, "stage.wall", population.groups());
+  check_names_of_walls(root, population.groups());
+  for (const TomlValue& stage : repeated(root, "stage")) check_names_of_walls(stage, population.groups());
   groups = population.first_groups();
 }
 

@@ -55,8 +55,8 @@ std::vector<Key<PackingTables>> packing_radii_keys() {
   using D = SizeDistribution;
   const auto uniform = when("distribution", {"uniform"}), log_normal = when("distribution", {"log_normal"});
   return {key("distribution", &T::sizes, &D::kind, "by number of grains"),
-          key("smallest", &T::sizes, &D::smallest, required, unit("m"), positive, uniform),
-          key("largest", &T::sizes, &D::largest, required, unit("m"), positive, uniform),
+          key("smallest", &T::sizes, &D::smallest, required, unit("m"), positive, uniform, "radii between the two"),
+          key("largest", &T::sizes, &D::largest, required, unit("m"), positive, uniform, "radii between the two"),
           key("median", &T::sizes, &D::median, required, unit("m"), positive, log_normal),
           key("deviation", &T::sizes, &D::deviation, required, from(0, 2), log_normal,
               "standard deviation of ln r; cut at three of them"),
@@ -91,12 +91,11 @@ std::vector<Key<PackingTables>> settling_keys() {
 static SizeDistribution sizes_of(const TomlValue& table, const PackingTables& given) {
   SizeDistribution sizes = given.sizes;
   if (sizes.kind == SizeDistribution::Kind::uniform && sizes.largest < sizes.smallest) {
-    fail_at(*table.find("largest"), "packing.radii.largest",
+    fail_at(*table.find("largest"),
             fmt::format("the largest radius {} m is below the smallest, {} m", sizes.largest, sizes.smallest), "",
             "Exchange them");
   }
-  if (given.sieve_curve)
-    sizes.sieves = with_key(table, "packing.radii", "path", [&] { return read_sieve_curve(*given.sieve_curve); });
+  if (given.sieve_curve) sizes.sieves = with_key(table, "path", [&] { return read_sieve_curve(*given.sieve_curve); });
   return sizes;
 }
 
@@ -107,7 +106,7 @@ ScalablePacking packing_options(const TomlValue& root, const PackingTables& tabl
   options.as_dense_as_possible = fraction != nullptr && !fraction->is_number();
   const bool open = tables.sides == PackingBox::Sides::walls && entry_of(options.method).open_top;
   options.box.sides = open ? PackingBox::Sides::open_top : tables.sides;
-  at_key(packing, "packing", [&] { set_amount(options.amount, options.sizes, options); });
+  at_key(packing, [&] { set_amount(options.amount, options.sizes, options); });
   return options;
 }
 
@@ -120,64 +119,36 @@ namespace fs = std::filesystem;
 
 using namespace casefile;
 
-/// [springs]: kN and kT, or the other two.
-struct SpringsOrSpeeds {
-  std::optional<double> kN, kT;            ///< Pa
-  std::optional<double> shear_wave_speed;  ///< m/s
-  std::optional<double> poisson_ratio;
-  SpringWeighting weighting = SpringWeighting::uniform;
-  std::optional<double> density;  ///< kg/m³
-};
-
 struct PackTables : PackCase {
   PackingTables tables;
-  SpringsOrSpeeds springs;
+  SpringsTable springs;
+  OutputCase output;
 };
-
-void bind_springs_and_output(File<PackTables>& file) {
-  using S = SpringsOrSpeeds;
-  const std::string how_stiff =
-      "two numbers say how stiff contacts are: kN and kT, or shear_wave_speed and poisson_ratio";
-  file.table("springs", &PackTables::springs, required, "springs of contacts: kN and kT, or wave speeds")
-      .keys({key("kN", &S::kN, unit("Pa"), positive, or_instead({"shear_wave_speed"}, how_stiff),
-                 only_with({"kT"}, how_stiff), "of every contact, walls too; instead of the wave speeds"),
-             key("kT", &S::kT, unit("Pa"), not_negative, only_with({"kN"}, how_stiff)),
-             key("shear_wave_speed", &S::shear_wave_speed, unit("m/s"), positive,
-                 only_with({"poisson_ratio"}, how_stiff), "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
-             key("poisson_ratio", &S::poisson_ratio, between(-1, 0.5), only_with({"shear_wave_speed"}, how_stiff),
-                 "plane strain; with shear_wave_speed"),
-             key("weighting", &S::weighting,
-                 "as in [springs] of an assembly; bodies fall on uniform ones, and of others the assembly that is "
-                 "written has none"),
-             key("density", &S::density, unit("kg/m³"), positive, "of the bodies, as packing.density")});
-  bind_table_file(file, "springs");
-  file.table("output", completed, "what is written with --out")
-      .keys({key_with<PackTables, std::vector<OutputFile>>(
-                 "files",
-                 [](PackTables& tables, const std::vector<OutputFile>& wanted) {
-                   tables.csv = std::ranges::find(wanted, OutputFile::csv) != wanted.end();
-                   tables.picture = std::ranges::find(wanted, OutputFile::picture) != wanted.end();
-                 },
-                 choices(names_of<OutputFile>()), or_empty,
-                 by_default(std::vector{OutputFile::csv, OutputFile::vtk, OutputFile::picture}),
-                 "csv: grains.csv, for [grains] path; picture: picture.png; [] for none of them"),
-             key_in<PackTables>("assembly", &PackCase::assembly,
-                                "assembly.json or, read and written faster, assembly.h5 (HDF5)")});
-}
 
 const File<PackTables>& pack_file() {
   static const File<PackTables> file = [] {
-    File<PackTables> made(case_schema, "case file of a packing");
+    File<PackTables> made(case_schema, "case file of a packing", CaseKind::packing);
+    made.ask(kinds_with);
     bind_packing(made, &PackTables::tables);
-    bind_springs_and_output(made);
+    bind_springs(made, &PackTables::springs, required);
+    bind_output(made, &PackTables::output);
     return made;
   }();
   return file;
 }
 
-SpringConstants springs_of(const SpringsOrSpeeds& given, double density) {
-  if (given.kN) return {*given.kN, *given.kT};
-  return springs_of_wave_speeds(density, wave_speeds_from_shear(*given.shear_wave_speed, *given.poisson_ratio));
+SpringConstants springs_of(const TomlValue& root, const SpringsTable& given, double density) {
+  if (given.shear_wave_speed)
+    return springs_of_wave_speeds(density, wave_speeds_from_shear(*given.shear_wave_speed, *given.poisson_ratio));
+  check_stable_in_motion(root, given.constants);
+  return given.constants;
+}
+
+/// What is written of [output].
+void take_output(const OutputCase& output, PackCase& result) {
+  result.csv = output.csv;
+  result.picture = output.picture;
+  result.assembly = output.assembly.value_or(result.assembly);
 }
 
 std::optional<SpringConstants> unweighted(const std::optional<SpringConstants>& springs, SpringWeighting weighting) {
@@ -198,9 +169,7 @@ PackCase packing_of(Case whole) {
   result.density = whole.assembly.density;
   if (whole.material) result.of_continuum = whole.material->given.density;
   result.body = whole.assembly.body;
-  result.csv = whole.output.csv;
-  result.picture = whole.output.picture;
-  result.assembly = whole.output.assembly.value_or(result.assembly);
+  take_output(whole.output, result);
   return result;
 }
 
@@ -229,9 +198,10 @@ PackCase parse_pack_case(std::string_view content, const std::string& name, cons
   tables.density = one_density(root, {{"springs", tables.springs.density}, {"packing", tables.tables.density}});
   SettlingOptions& settling = tables.packing.settling;
   settling.density = tables.density.value_or(settling.density);
-  settling.springs = springs_of(tables.springs, settling.density);
+  settling.springs = springs_of(root, tables.springs, settling.density);
   tables.network = {.springs = unweighted(settling.springs, tables.springs.weighting),
                     .gap_tolerance = tables.tables.gap_tolerance};
+  take_output(tables.output, tables);
   tables.document = std::move(root);
   return tables;
 }

@@ -24,7 +24,7 @@ const casefile::File<StudyCase>& study_file() {
   static const File<StudyCase> file = [] {
     using S = StudyCase;
     using V = VariedKey;
-    File<S> made(case_schema, "study file");
+    File<S> made(case_schema, "study file", CaseKind::study);
     made.table("study", required, "error against time: what is measured")
         .keys({key("verb", &S::verb, choices({"solve", "homogenize", "calibrate", "stability", "pack", "run"}),
                    "what is done at each setting"),
@@ -60,27 +60,25 @@ void check_varied(const TomlValue& table, const VariedKey& varied) {
   using casefile::fail_at;
   for (const std::string& key : varied.keys) {
     if (key.find('.') == std::string::npos)
-      fail_at(*table.find("key"), "vary.key", fmt::format("'{}' is no key of a case", key),
-              "a key has a table and a name", "Write it as in assembly.rows");
+      fail_at(*table.find("key"), fmt::format("'{}' is no key of a case", key), "a key has a table and a name",
+              "Write it as in assembly.rows");
   }
   if (varied.keys.empty())
-    fail_at(*table.find("key"), "vary.key", "it is not said what varies", "the key is empty", "Name a key of the case");
+    fail_at(*table.find("key"), "it is not said what varies", "the key is empty", "Name a key of the case");
   if (!varied.names.empty()) {
     if (std::set<std::string>(varied.names.begin(), varied.names.end()).size() != varied.names.size())
-      fail_at(*table.find("names"), "vary.names", "a name is given twice", "each is one setting of the study",
-              "Leave it out once");
+      fail_at(*table.find("names"), "a name is given twice", "each is one setting of the study", "Leave it out once");
     if (!varied.orders.empty() && varied.orders.size() != varied.names.size())
-      fail_at(*table.find("orders"), "vary.orders",
+      fail_at(*table.find("orders"),
               fmt::format("there are {} orders of {} names", varied.orders.size(), varied.names.size()),
               "each name has one", "Give as many");
     return;
   }
   const std::set<double> different(varied.values.begin(), varied.values.end());
   if (different.size() != varied.values.size())
-    fail_at(*table.find("values"), "vary.values", "a value is given twice", "each is one setting of the study",
-            "Leave it out once");
+    fail_at(*table.find("values"), "a value is given twice", "each is one setting of the study", "Leave it out once");
   if (varied.refines != VariedKey::Refines::not_at_all && *different.begin() <= 0)
-    fail_at(*table.find("values"), "vary.values", fmt::format("{} is among values that refine", *different.begin()),
+    fail_at(*table.find("values"), fmt::format("{} is among values that refine", *different.begin()),
             "orders are read off their logarithms", "Give positive values, or set refines = \"not\"");
 }
 
@@ -105,22 +103,21 @@ StudyCase parse_study_case(std::string_view content, const std::string& name, co
                             return !varied.orders.empty();
                           });
   if (result.truth == Truth::richardson && !has_orders)
-    fail_at(study, "study.order", "the order is missing", "the limit is extrapolated by it",
+    fail_at(study, "order", "the order is missing", "the limit is extrapolated by it",
             "Give order, or truth = \"finest\"");
   if (result.truth == Truth::known && result.relative && result.value == 0)
-    fail_at(*study.find("value"), "study.value", "errors are relative to 0", "they would be infinite",
-            "Set relative = false");
+    fail_at(*study.find("value"), "errors are relative to 0", "they would be infinite", "Set relative = false");
   for (std::size_t k = 0; k < result.varied.size(); ++k) check_varied(repeated(root, "vary")[k], result.varied[k]);
   if (result.varied.empty())
-    fail_at(study, "study", "nothing is varied", "a study compares settings", "Add [[vary]] with key and values");
+    fail_at(study, "nothing is varied", "a study compares settings", "Add [[vary]] with key and values");
   const auto refining = std::count_if(result.varied.begin(), result.varied.end(), [](const VariedKey& varied) {
     return varied.names.empty() && varied.refines != VariedKey::Refines::not_at_all;
   });
   if (refining > 1)
-    fail_at(repeated(root, "vary").back(), "vary.refines", fmt::format("{} keys refine", refining),
+    fail_at(repeated(root, "vary").back(), "refines", fmt::format("{} keys refine", refining),
             "errors are ordered by one", "Set refines = \"not\" of the others");
   if (refining == 0 && result.truth != Truth::known)
-    fail_at(study, "study.truth", "no key refines, and the truth is that of the finest level", "there is none",
+    fail_at(study, "truth", "no key refines, and the truth is that of the finest level", "there is none",
             "Set refines of one [[vary]], or truth = \"known\" with value");
   result.document = std::move(root);
   return result;

@@ -228,6 +228,7 @@ GrainRows read_grains(const std::filesystem::path& path, std::optional<double> d
 
 namespace {
 
+constexpr auto as_springs = "back to the distance at the start, and across it; 0 in the thesis: bonds creep";
 constexpr BondProperty properties_of_bonds[] = {
     {"normal_dashpot", &GrainBond::normal_dashpot, "N s/m (discs: per m of depth)",
      "C_n along the line of centres: a pair stops as exp(-C_n t/m), m the reduced mass; a steady pull N makes it creep "
@@ -236,9 +237,8 @@ constexpr BondProperty properties_of_bonds[] = {
      "C_s across it, at the point of the bond; no friction limits it"},
     {"rolling_dashpot", &GrainBond::rolling_dashpot, "N m s",
      "against the relative spin; 0 in the thesis: discs roll freely on one another"},
-    {"normal_spring", &GrainBond::normal_spring, "N/m (discs: per m of depth)",
-     "back to the distance at the start; 0 in the thesis: bonds creep"},
-    {"tangential_spring", &GrainBond::tangential_spring, "N/m (discs: per m of depth)", "the same across"},
+    {"normal_spring", &GrainBond::normal_spring, "N/m (discs: per m of depth)", as_springs},
+    {"tangential_spring", &GrainBond::tangential_spring, "N/m (discs: per m of depth)", as_springs},
     {"bending_spring", &GrainBond::bending_spring, "N m (discs: per m of depth)",
      "kM, moment by the rotation of one disc against the other; a parallel bond of width w has normal_spring w²/12"},
 };

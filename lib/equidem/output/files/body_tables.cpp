@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_file.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/histories.hpp"
 
@@ -130,12 +131,7 @@ void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond
                     const ContactStrengths& strengths, bool overwrite) {
   Table table;
   table.view("i", bonds, &GrainBond::i).view("j", bonds, &GrainBond::j);
-  table.view("normal_dashpot", bonds, &GrainBond::normal_dashpot);
-  table.view("tangential_dashpot", bonds, &GrainBond::tangential_dashpot);
-  table.view("rolling_dashpot", bonds, &GrainBond::rolling_dashpot);
-  table.view("normal_spring", bonds, &GrainBond::normal_spring);
-  table.view("tangential_spring", bonds, &GrainBond::tangential_spring);
-  table.view("bending_spring", bonds, &GrainBond::bending_spring);
+  for (const BondProperty& property : bond_properties()) table.view(property.name, bonds, property.value);
   if (!strengths.tension.empty())
     table.view("tension", strengths.tension, std::identity()).view("shear", strengths.shear, std::identity());
   write_csv(path, table, overwrite);

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
-#include <initializer_list>
-#include <iterator>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -153,12 +151,6 @@ bool check_series(const Series& series, const Plot& plot) {
                           counted(series.x.size(), "value"), counted(series.y.size(), "value")),
               "each point has both", "Give as many x as y");
   }
-  if (series.low.size() != series.high.size() || (!series.low.empty() && series.low.size() != series.y.size())) {
-    bad_input(fmt::format("series '{}' of a plot has {} with {} and {} of error bars", series.label,
-                          counted(series.y.size(), "point"), counted(series.low.size(), "lower end"),
-                          counted(series.high.size(), "upper end")),
-              "each bar has a point and two ends", "Give as many of each, or no bars");
-  }
   bool any_point = false;
   for (std::size_t k = 0; k < series.x.size(); ++k) {
     if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
@@ -230,17 +222,14 @@ AxisRange rounded(double low, double high) {
 
 /// The given bounds, else those of the data with a small margin, rounded outwards. Data that differ by round-off alone
 /// are drawn as equal ones.
-AxisRange range_of(const Axis& axis, const std::vector<Series>& series,
-                   std::initializer_list<std::vector<double> Series::*> members) {
+AxisRange range_of(const Axis& axis, const std::vector<Series>& series, std::vector<double> Series::*member) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const Series& one : series) {
-    for (const auto member : members) {
-      for (const double v : one.*member) {
-        if (!std::isfinite(v) || (axis.logarithmic && v <= 0)) continue;
-        low = std::min(low, v);
-        high = std::max(high, v);
-      }
+    for (const double v : one.*member) {
+      if (!std::isfinite(v) || (axis.logarithmic && v <= 0)) continue;
+      low = std::min(low, v);
+      high = std::max(high, v);
     }
   }
   if (axis.logarithmic) {
@@ -306,38 +295,20 @@ int point_type(Marker marker, bool filled) {
   return 7;
 }
 
-/// The parts of the plot command that draw one series.
+/// The part of the plot command that draws one series.
 /// \param plain " noenhanced", or nothing
-std::vector<std::string> plot_clauses(const Series& series, const PlotData::Place& place, const std::string& plain) {
+std::string plot_clause(const Series& series, const PlotData::Place& place, const std::string& plain) {
   const std::string rows = place.last ? fmt::format("::{}::{}", place.first, *place.last) : "";
   const bool line = series.style == SeriesStyle::line || series.style == SeriesStyle::dashed_line;
   const std::string every = line ? " every stride" + rows : rows.empty() ? "" : " every " + rows;
-  const std::string columns = fmt::format("using \"{}\":\"{}\"", place.x, place.y);
   const std::string title = series.label.empty() ? "notitle" : "title " + gnuplot_string(series.label) + plain;
-  const std::string points = fmt::format("pt {} ps marker", point_type(series.marker, series.filled));
-  const char* colour = hex(series.colour);
-  std::vector<std::string> clauses;
-  if (!series.low.empty()) {
-    clauses.push_back(fmt::format("data{} {}:\"{}\":\"{}\" with yerrorbars pt -1 lw 1.2 lc rgb '{}' notitle",
-                                  rows.empty() ? "" : " every " + rows, columns, place.low, place.high, colour));
-  }
-  std::string look;
-  switch (series.style) {
-    case SeriesStyle::line:
-      look = "lines lw 1.8";
-      break;
-    case SeriesStyle::dashed_line:
-      look = "lines lw 1.8 dt (8,5)";
-      break;
-    case SeriesStyle::points:
-      look = "points lw 1.6 " + points;
-      break;
-    case SeriesStyle::line_with_points:
-      look = "linespoints lw 1.6 " + points;
-      break;
-  }
-  clauses.push_back(fmt::format("data{} {} with {} lc rgb '{}' {}", every, columns, look, colour, title));
-  return clauses;
+  const bool joined = series.style == SeriesStyle::line_with_points;
+  const std::string look =
+      line ? fmt::format("lines lw 1.8{}", series.style == SeriesStyle::dashed_line ? " dt (8,5)" : "")
+           : fmt::format("{} lw 1.6 pt {} ps marker", joined ? "linespoints" : "points",
+                         point_type(series.marker, series.filled));
+  return fmt::format("data{} using \"{}\":\"{}\" with {} lc rgb '{}' {}", every, place.x, place.y, look,
+                     hex(series.colour), title);
 }
 
 /// Points of lines that the SVG leaves out, so that it has at most 15,000 of them, less than 300 kB.
@@ -386,9 +357,6 @@ PlotData wide_table(const Plot& plot) {
     PlotData::Place& place = data.places.emplace_back();
     place.x = table.columns().empty() ? add(series.x, column_name(plot.x.label), "x") : data.places.front().x;
     place.y = add(series.y, series_name(series), "y");
-    if (series.low.empty()) continue;
-    place.low = add(series.low, place.y + "_low", "low");
-    place.high = add(series.high, place.y + "_high", "high");
   }
   data.csv = table.csv();
   return data;
@@ -400,25 +368,18 @@ PlotData tidy_table(const Plot& plot) {
   UniqueNames columns, names;
   columns.add("series", "");
   const std::string x = columns.add(column_name(plot.x.label), "x"), y = columns.add(column_name(plot.y.label), "y");
-  const bool bars = std::ranges::any_of(plot.series, [](const Series& series) { return !series.low.empty(); });
-  const std::string low = bars ? columns.add("low", "") : "", high = bars ? columns.add("high", "") : "";
   std::size_t row = 0, total = 0;
   for (const Series& series : plot.series) total += series.x.size();
   CsvText text(columns.all());
   for (const Series& series : plot.series) {
     const std::string name = names.add(series_name(series), "y");
-    const bool has_bars = !series.low.empty();
     const std::size_t first = series.x.empty() ? total : row;  // behind all rows: no point
     row += series.x.size();
-    data.places.push_back({x, y, has_bars ? low : "", has_bars ? high : "", first, series.x.empty() ? first : row - 1});
+    data.places.push_back({x, y, first, series.x.empty() ? first : row - 1});
     for (std::size_t k = 0; k < series.x.size(); ++k) {
       text.cell(name);
       text.cell(finite_or_nan(series.x[k]));
       text.cell(finite_or_nan(series.y[k]));
-      for (const auto* end : {&series.low, &series.high}) {
-        if (has_bars) text.cell(finite_or_nan((*end)[k]));
-        if (bars && !has_bars) text.empty_cell();
-      }
       text.end_row();
     }
   }
@@ -508,14 +469,14 @@ PlotData plot_data(const Plot& plot) {
 }
 
 std::string plot_script(const std::string& name, const Plot& plot, const PlotData& data) {
-  const AxisRange x = range_of(plot.x, plot.series, {&Series::x});
-  const AxisRange y = range_of(plot.y, plot.series, {&Series::y, &Series::low, &Series::high});
+  const AxisRange x = range_of(plot.x, plot.series, &Series::x);
+  const AxisRange y = range_of(plot.y, plot.series, &Series::y);
   const std::string plain = plot.enhanced ? "" : " noenhanced";
   std::string axes = axis_scale('x', plot.x, x) + axis_scale('y', plot.y, y);
   for (const VerticalLine& line : plot.vertical_lines) axes += vertical_line(line, plain);
   std::vector<std::string> clauses;
   for (std::size_t k = 0; k < plot.series.size(); ++k)
-    std::ranges::move(plot_clauses(plot.series[k], data.places[k], plain), std::back_inserter(clauses));
+    clauses.push_back(plot_clause(plot.series[k], data.places[k], plain));
   return fmt::format(plot_gp_in, fmt::arg("name", name), fmt::arg("data", gnuplot_string(name + ".csv")),
                      fmt::arg("title", gnuplot_string(plot.title)), fmt::arg("x", gnuplot_string(plot.x.label)),
                      fmt::arg("y", gnuplot_string(plot.y.label)), fmt::arg("plain", plain), fmt::arg("x_min", x.min),

@@ -40,10 +40,8 @@ struct Series {
   Marker marker = Marker::circle;
   bool filled = true;       ///< markers: filled or open
   std::string column = {};  ///< its name in the data file; empty: made of the label
-  /// Ends of an error bar at each point; empty: none. A bar with an end that is not finite is left out.
-  std::vector<double> low = {}, high = {};
 
-  /// A point behind the others, without an error bar.
+  /// A point behind the others.
   void add(double x_of_point, double y_of_point) { x.push_back(x_of_point), y.push_back(y_of_point); }
 };
 
@@ -82,9 +80,7 @@ std::string with_symbols(const std::string& text);
 /// The data of a plot: its file and where each series lies in it.
 struct PlotData {
   struct Place {
-    std::string x;  ///< column names
-    std::string y;
-    std::string low, high;                 ///< empty: no error bars
+    std::string x, y;                      ///< column names
     std::size_t first = 0;                 ///< row of its first point
     std::optional<std::size_t> last = {};  ///< row of its last point; none: all rows are of this series
   };
@@ -93,8 +89,8 @@ struct PlotData {
 };
 
 /// Where all series have the same x, a row for each x and a column for each series; else a row for each point: the name
-/// of its series, x, y and, where any series has error bars, their ends, empty for the others. The name is that of the
-/// column in the other case. A value that is not finite is written "nan", at which gnuplot breaks a line.
+/// of its series, which is that of the column in the other case, x and y. A value that is not finite is written "nan",
+/// at which gnuplot breaks a line.
 PlotData plot_data(const Plot& plot);
 
 /// A script that reads NAME.csv and draws NAME.svg and NAME.png in the folder in which it runs.
