@@ -225,6 +225,8 @@ void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions&
 
 /// The error of set_kinds with the line and the key of its option: "walls.stiffness", "pairs.2.with".
 [[noreturn]] void fail_at_option(const Error& error, const TomlValue& collisions) {
+  if (error.where() == "group")
+    bad_input_at(collisions.where() + ": grain.group", error.problem(), error.why(), error.remedy());
   std::vector<std::string_view> words = parts_of(error.where(), '.');
   std::vector<const TomlValue*> tables;  // the first that has the key is at fault, else the first
   const TomlValue* walls = collisions.find("walls");
@@ -233,8 +235,6 @@ void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions&
   tables.push_back(&collisions);
   words.erase(words.begin(), words.begin() + (words.front() == "pairs" ? 2 : words.front() == "walls" ? 1 : 0));
   const std::string option(words.empty() ? "" : words.front());
-  if (option == "group")
-    bad_input_at(collisions.where() + ": grain.group", error.problem(), error.why(), error.remedy());
   for (const TomlValue* table : tables)
     if (const TomlValue* given = table->find(option)) fail_at(*given, error.problem(), error.why(), error.remedy());
   if (option.empty()) fail_at(*tables.front(), error.problem(), error.why(), error.remedy());

@@ -201,12 +201,20 @@ std::vector<double> energy_cells(BodyFamily family, const EnergyLedger& ledger) 
 
 void write_energy_csv(const std::filesystem::path& path, std::span<const EnergySample> energies, BodyFamily family,
                       Body body, bool overwrite) {
-  Table table;
-  table.view("step", energies, &EnergySample::step).view("time_s", energies, &EnergySample::time);
-  const std::vector<std::string> names = energy_columns(family, body);
-  for (std::size_t k = 0; k < names.size(); ++k)
-    table.view(names[k], energies, [=](const EnergySample& sample) { return energy_cells(family, sample.ledger)[k]; });
-  write_csv(path, table, overwrite);
+  std::vector<std::string> columns{"step", "time_s"};
+  for (const std::string& name : energy_columns(family, body)) columns.push_back(name);
+  const auto make = [&](const TextSink& to) {
+    CsvText text(columns);
+    for (const EnergySample& sample : energies) {
+      text.cell(sample.step);
+      text.cell(sample.time);
+      for (const double value : energy_cells(family, sample.ledger)) text.cell(value);
+      text.end_row();
+      text.pass_on(to, false);
+    }
+    text.pass_on(to, true);
+  };
+  write_file(path, make, overwrite);
 }
 
 Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale) {
