@@ -92,7 +92,7 @@ class Completion(ProgramTest):
         self.assertGreater(len(keys), 100)
         text = self.check_done(equidem("help", "case")).stdout
         for key in keys:
-            self.assertRegex(text, rf"(?m)^  (?:\w+\.)*{re.escape(key.split('.')[-1])}\b", key)
+            self.assertRegex(text, rf"(?m)^  (?:[\w.]+, )*(?:\w+\.)*{re.escape(key.split('.')[-1])}\b", key)
 
     def test_bash_can_read_its_script(self):
         script = self.folder / "bash"
