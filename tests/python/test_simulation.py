@@ -26,6 +26,16 @@ def test_any_division_of_the_steps_gives_the_same_bits():
     assert np.array_equal(at_once.velocities, in_parts.velocities)
 
 
+@pytest.mark.parametrize(("key", "value", "words"), [("viscoelastic.normal", "maxwell", "maxwell"),
+                                                     ("effects.prestress", "on", "prestress")])
+def test_a_simulation_refuses_what_a_run_refuses(key, value, words):
+    case = eq.Case(CASES / "run_pulse.toml").set(key, value)
+    if key.startswith("viscoelastic"):
+        case.set("viscoelastic.tauN", 0.1)
+    with pytest.raises(eq.BadInput, match=words):
+        case.simulation()
+
+
 def test_frames_follow_the_motion():
     simulation = pulse()
     frames = list(simulation.frames(every=10))

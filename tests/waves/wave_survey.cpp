@@ -89,6 +89,16 @@ TEST_CASE("a_compressed_lattice_buckles_by_the_wave_that_its_forces_outweigh") {
   }
 }
 
+TEST_CASE("spins_that_grow_where_kT_is_negative_are_no_buckling_under_forces_at_rest") {
+  const Assembly lattice = periodic_hexagonal(3, 4);
+  const ContactSprings springs = under_forces(lattice, ContactSprings({1, -0.05}), 0.001);
+  const Stability s = analyze_stability(lattice, springs, {}, {.density = 1});
+  CAPTURE(s.inertia.unstable_modes.value_or(-1), s.growth_rate());
+  CHECK(s.inertia.unstable_modes == 0);
+  CHECK(s.growth_rate() > 0);
+  CHECK(s.status() == "stable");
+}
+
 TEST_CASE("the_survey_of_a_lattice_says_what_closed_forms_say") {
   const double kT = GENERATE(-0.2, 0.5);
   const ContactSprings springs(SpringConstants{1, kT});

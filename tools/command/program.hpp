@@ -17,7 +17,7 @@ namespace equidem {
 /// Runs a command after its options are read; returns the exit code.
 using Run = std::function<int()>;
 
-/// What a command takes of the effects that a case may ask for; it refuses a case with another one.
+/// The effects of a case that a command takes; it refuses a case that asks for another one.
 struct Takes {
   enum class Viscoelastic {
     none,

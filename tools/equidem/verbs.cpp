@@ -65,7 +65,7 @@ void check_viscoelastic(const Case& resolved, std::string_view taker, Takes::Vis
 Case read_case(const CommonOptions& options) {
   prepare(options);
   Case resolved = read_case(options.case_file, overrides_of(options));
-  if (!options.verb.empty()) check_taken(resolved, options.verb, entry_named(verbs, options.verb, "verb").takes);
+  check_taken(resolved, options.verb, entry_named(verbs, options.verb, "verb").takes);
   return resolved;
 }
 

@@ -31,7 +31,7 @@ const std::vector<Part>& parts() {
   return all;
 }
 
-/// What files of some kinds have, with its specification in each.
+/// A key or table that files of some kinds have, with its specification in each.
 template <class Spec>
 struct OfKinds {
   std::vector<std::pair<const FileSpec*, const Spec*>> specs;

@@ -48,7 +48,7 @@ struct Solution {
 /// its branch is.
 double normal_rounding(const Assembly& assembly, const Contact& contact);
 
-/// What a solver reports of its matrix and of its factor.
+/// The findings of a solver: properties of its matrix and of its factor.
 struct SolverFindings {
   std::string solver;  ///< the back end and factorization used
   std::int64_t unknowns = 0;

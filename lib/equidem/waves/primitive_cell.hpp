@@ -69,7 +69,8 @@ PrimitiveCell given_cell(const Assembly& assembly, const ContactSprings& springs
 /// The smallest cell: all translations that map centres, radii, sections, contacts, their places, springs and
 /// forces at rest onto themselves to 1e-9 (of the mean radius, of the largest spring) are found; one disc is left of a
 /// lattice however many the assembly has. The assembly itself where none maps it. Linear in the number of discs where
-/// none does, else n log n. \throws Error (bad_input) where the assembly is not periodic
+/// none does, else n log n.
+/// \throws Error (bad_input) where the assembly is not periodic
 PrimitiveCell primitive_cell(const Assembly& assembly, const ContactSprings& springs);
 
 }  // namespace equidem

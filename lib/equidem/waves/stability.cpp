@@ -213,7 +213,8 @@ void find_stages(const Assembly& assembly, const ContactSprings& springs, std::s
 std::string Stability::status() const {
   if (mechanisms.count() > 0 || (survey && !survey->free_waves.empty())) return "mechanism";
   const bool below = critical.sought && ratio && *ratio < 0 && *ratio <= critical.ratio;
-  const bool buckles = critical_load && growth_rate() > 0;
+  // With kT < 0 spins grow in motion where statics is stable.
+  const bool buckles = critical_load && !lowest && growth_rate() > 0;
   return inertia.unstable_modes != 0 || below || buckles ? "unstable" : "stable";
 }
 

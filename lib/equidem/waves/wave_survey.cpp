@@ -119,7 +119,10 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
   const bool on_lines = cell.on_lines_of_centres();
   const bool prestressed = cell.prestressed();
   survey.ratio_sought = on_lines && !cell.bends() && !prestressed;
-  const bool turned = turns && (any_tangential || !on_lines);
+  const bool turned_by_forces = std::any_of(cell.contacts.begin(), cell.contacts.end(), [](const CellContact& c) {
+    return c.prestress && (turns_i(*c.prestress, c.frame) || turns_j(*c.prestress, c.frame));
+  });
+  const bool turned = turns && (any_tangential || !on_lines || turned_by_forces);
   const BlochWaves in_motion(cell, inertia, turned), at_rest(cell, inertia, turns);
   survey.cell = cell;
   survey.zone = brillouin_zone(cell.period);

@@ -175,6 +175,7 @@ class Steps {
     const LongWork working;
     const KeptSettings settings;
     CommonOptions options;
+    options.verb = "run";
     options.quiet = !progress_wanted();
     options.case_file = inputs_.case_file();
     options.set = inputs_.overrides();

@@ -432,6 +432,7 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   const auto table = *options.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
   CommonOptions stored;
+  stored.verb = options.verb;
   stored.case_file = *options.out / "case.toml";
   stored.quiet = options.quiet;
   if (continued_part(stored, *options.out) != continued_part(options, *options.out)) {

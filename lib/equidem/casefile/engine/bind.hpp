@@ -560,7 +560,7 @@ class File<F>::Binder {
   void holds_tables() { file_.spec_.tables.push_back(spec_); }
 
   void keys(const std::vector<Key<Item>>& keys) { bind(keys); }
-  /// Of a base of the struct.
+  /// Binds keys of a base of the struct.
   template <class Base>
   void keys(const std::vector<Key<Base>>& keys) {
     bind(keys);

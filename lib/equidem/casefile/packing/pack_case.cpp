@@ -144,7 +144,7 @@ SpringConstants springs_of(const TomlValue& root, const SpringsTable& given, dou
   return given.constants;
 }
 
-/// What is written of [output].
+/// Takes the part of [output] that a packing writes.
 void take_output(const OutputCase& output, PackCase& result) {
   result.csv = output.csv;
   result.picture = output.picture;

@@ -38,7 +38,7 @@ HomogenizedCell homogenize_cell(const Assembly& cell, const ContactSprings& spri
   const EffectiveStiffness effective = effective_stiffness(cell, springs, options);
   if (effective.unstable_modes > 0)
     computation_failed("the cell is unstable",
-                       fmt::format("it would give way by {}", counted(*effective.unstable_modes, "mode")),
+                       fmt::format("it has {}", counted(*effective.unstable_modes, "unstable mode")),
                        "Use a larger kT");
   if (!effective.unstable_modes)
     computation_failed("the stability of the cell is not known", "this solver does not count negative pivots",
