@@ -202,10 +202,11 @@ def main():
         for heading, recipe in RECIPES.items():
             sources += add(source, folder, heading, recipe)
             users |= set(users_of(source, recipe["users"]))
-        # A quoted include is searched beside the including file first: the user of verbs.hpp is compiled beside the new list.
-        main_file = os.path.join(source, "tools/equidem/main.cpp")
-        users.discard(main_file)
-        sources += [shutil.copy(main_file, os.path.join(folder, "tools/equidem")), *sorted(users)]
+        # A quoted include is searched beside the including file first: users of verbs.hpp are compiled beside the new list.
+        for name in ("main.cpp", "verbs.cpp"):
+            users.discard(os.path.join(source, "tools/equidem", name))
+            sources.append(shutil.copy(os.path.join(source, "tools/equidem", name), os.path.join(folder, "tools/equidem")))
+        sources += sorted(users)
         new = build_program(source, build, program, objects, folder, sources)
         check(new, source)
     print(f"{len(RECIPES)} recipes followed, {len(sources)} files compiled: "
