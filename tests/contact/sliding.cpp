@@ -48,9 +48,10 @@ Resisted by_midpoint_rule(const Sliding& law, double stretch, double velocity, d
 Resisted explicitly(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
   using simd::One;
   const auto of = [&](double impulse_before) {
-    return slide<true, false>(sliding_law(One{law.coefficient}, One{law.stiffness}, step), One{law.dashpot * step},
-                              One{stretch}, One{velocity}, One{velocity}, One{}, One{impulse_before},
-                              One{law.coefficient * std::max(normal_force, 0.0) * step}, step);
+    return CoulombSpring::step<true, false>(sliding_law(One{law.coefficient}, One{law.stiffness}, step),
+                                            One{law.dashpot * step}, One{stretch}, One{velocity}, One{velocity}, One{},
+                                            One{impulse_before},
+                                            One{law.coefficient * std::max(normal_force, 0.0) * step}, step);
   };
   const auto found = of(-of(0).impulse[0]);
   return {{found.impulse[0], found.stretch[0], found.slip_loss[0], found.dashpot_loss[0], found.slides[0] != 0},
@@ -228,8 +229,9 @@ TEST_CASE("several_contacts_slide_as_each_of_them_alone") {
     const auto by = [&]<class Number>(std::size_t k, auto scheme) {
       const auto at = [&](const double(&column)[4]) { return simd::load<Number>(column + k); };
       const Number yield = at(law[0]) * simd::larger(at(state[3]), Number{});
-      return slide<decltype(scheme)::value, false>(sliding_law(at(law[0]), at(law[1]), dt), at(law[2]), at(state[0]),
-                                                   at(state[1]), at(state[1]), at(state[2]), at(state[4]), yield, dt);
+      return CoulombSpring::step<decltype(scheme)::value, false>(sliding_law(at(law[0]), at(law[1]), dt), at(law[2]),
+                                                                 at(state[0]), at(state[1]), at(state[1]), at(state[2]),
+                                                                 at(state[4]), yield, dt);
     };
     const auto compare = [&](auto scheme) {
       const auto all = by.template operator()<Four>(0, scheme);

@@ -9,11 +9,13 @@
 /// contacts at a time evaluate it in SI units; loops over single contacts evaluate it without dimensions, as the maps
 /// (Fujioka & Ushijima 2005, section 2): depth = d/d_c, sigma = v dt/d_c, a = k length_factor(d_c) dt²/m, forces in
 /// units of m d_c/dt², m the reduced mass. Both see the same law because spring and dashpot are powers of d without a
-/// length of their own: spring(k, d) = k d^p, dashpot(c, d) = c d^((p - 1)/2).
+/// length of their own: spring(k, d) = k d^p, dashpot(c, d) = c d^((p - 1)/2). It names its law of slip, Tangential, a
+/// struct with the function of CoulombSpring (sliding.hpp), which maps and simultaneous laws take.
 #pragma once
 
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/contact/restitution.hpp"
+#include "equidem/contact/sliding.hpp"
 #include "equidem/core/square_root.hpp"
 #include "equidem/material/spring_relations.hpp"
 

@@ -19,6 +19,7 @@ namespace equidem::laws {
 
 /// F = k d + c v, c = 2 zeta sqrt(m k) (Cundall & Strack 1979; the law C of Fujioka & Ushijima 2005).
 struct LinearDashpot {
+  using Tangential = CoulombSpring;
   static constexpr LawFacts facts = {.name = "linear_dashpot",
                                      .letter = "C",
                                      .source = "Cundall & Strack 1979",
@@ -38,6 +39,7 @@ struct LinearDashpot {
 /// 2005). Velocity against d^(5/4) is that of a linear spring and dashpot with zeta = alpha/sqrt(5): the restitution
 /// does not depend on the speed, and is exact for either end of the contact.
 struct HertzDashpot {
+  using Tangential = CoulombSpring;
   static constexpr LawFacts facts = {
       .name = "hertz_dashpot",
       .letter = "T",

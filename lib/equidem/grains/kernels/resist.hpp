@@ -54,6 +54,7 @@ struct SpringLosses {
   Lanes slip, dashpot, released;
 };
 
+/// \tparam Tangential as CoulombSpring
 /// \param dashpot times dt, kg
 /// \param velocity of j relative to i, with half of the change by this contact in the last step (Euler)
 /// \param mean_velocity Verlet: over the drift
@@ -62,7 +63,7 @@ struct SpringLosses {
 /// \param[in,out] impulse on j
 /// \param[in,out] stretch of the spring, m
 /// \param[in,out] losses 0 before
-template <ResponseKind kind, class Lanes>
+template <class Tangential, ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void resist(const SlidingLaw<Lanes>& law, const Lanes& dashpot, Lanes velocity,
                                   const Lanes& mean_velocity, const Lanes& mobility, const Lanes& repulsion,
                                   const ContactChanges<Lanes>& at, double dt, Lanes& impulse, Lanes& stretch,
@@ -76,8 +77,8 @@ EQUIDEM_ALWAYS_INLINE void resist(const SlidingLaw<Lanes>& law, const Lanes& das
     velocity -= mobility * impulse;  // without this contact's own part in it
   }
   const Lanes yield = law.friction * larger(repulsion, Lanes{});
-  SlidingStep<Lanes> tangent =
-      slide<kind.verlet, kind.equal>(law, dashpot, stretched, velocity, mean_velocity, mobility, impulse, yield, dt);
+  SlidingStep<Lanes> tangent = Tangential::template step<kind.verlet, kind.equal>(
+      law, dashpot, stretched, velocity, mean_velocity, mobility, impulse, yield, dt);
   if constexpr (!kind.bounded) {
     tangent.impulse = only(touch, tangent.impulse);
     tangent.stretch = only(touch, tangent.stretch);
@@ -144,8 +145,8 @@ template <ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes roll(RollingLanes<Lanes>& of, const Lanes& repulsion, const ContactChanges<Lanes>& at,
                                  double dt, RollingMemory<Lanes>& memory) {
   SpringLosses<Lanes> losses{};
-  resist<kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility, repulsion, at, dt, memory.impulse,
-               memory.stretch, losses);
+  resist<CoulombSpring, kind>(of.spring, of.dashpot, of.velocity, of.velocity, of.mobility, repulsion, at, dt,
+                              memory.impulse, memory.stretch, losses);
   of.lost = losses.slip + losses.dashpot;
   return losses.released;
 }

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 
+#include "equidem/contact/laws/law.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/resist.hpp"
@@ -187,8 +188,8 @@ EQUIDEM_ALWAYS_INLINE void respond(const LawLanes<Lanes>& law, const Lanes& dash
   }
   memory.impulse = sum;
   if constexpr (kind.friction) {
-    resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility, impulse, at, dt,
-                 memory.tangential, memory.stretch, losses);
+    resist<typename Law::Tangential, kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility,
+                                           impulse, at, dt, memory.tangential, memory.stretch, losses);
     if constexpr (kind.rolling) losses.released += roll<kind>(effects.rolling, impulse, at, dt, memory.rolling);
     if constexpr (kind.cohesion) losses.released += lost_at_range<kind>(effects.cohesion, motion, near, dt);
   } else {

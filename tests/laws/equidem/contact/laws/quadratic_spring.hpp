@@ -11,6 +11,7 @@
 namespace equidem::laws {
 
 struct QuadraticSpring {
+  using Tangential = CoulombSpring;
   static constexpr LawFacts facts = {
       .name = "quadratic_spring",
       .letter = "Q",
