@@ -13,6 +13,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 
 #include "homogenize/samples.hpp"
@@ -59,8 +60,20 @@ double complex_difference(const HarmonicStiffness& c, const Matrix3& storage, co
   return difference / size;
 }
 
+/// The assembly with forces at rest, some pulling and some pressing: `share` of kN times the length of each contact.
+Assembly with_forces(Assembly assembly, const ContactSprings& springs, double share) {
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Vec2 l = assembly.branch(assembly.contacts[c]);
+    const double twice = 2 * std::atan2(l.y, l.x), size = share * springs[c].kN * norm(l);
+    assembly.contact_normal_force.push_back(size * (0.3 + std::cos(twice)));
+    assembly.contact_tangential_force.push_back(0.4 * size * std::sin(twice));
+  }
+  return assembly;
+}
+
 /// Complex stiffness by dense algebra: every contact adds k g g^T with g the derivative of its stretch or slip by the
-/// unknowns, and 1/A (sum k a a^T - f^T K^-1 f) remains of the mean strains a.
+/// unknowns, forces at rest N and T of discs N/l s s^T - T/l (n s^T + s n^T) with n, s of the displacements alone, and
+/// 1/A (sum k a a^T - f^T K^-1 f) remains of the mean strains a.
 struct DenseStiffness {
   Matrix3 storage{}, loss{};
 };
@@ -76,21 +89,36 @@ DenseStiffness dense_stiffness(const Assembly& assembly, const ContactSprings& s
     const Contact& contact = assembly.contacts[c];
     const ContactFrame frame = frame_of(assembly, c);
     const EndGradients g = end_gradients(frame, scale);
-    const auto add = [&](Amplitude spring, const std::array<double, 3>& of_i, const std::array<double, 3>& of_j,
-                         Vec2 direction) {
+    const auto row_of = [&](const std::array<double, 3>& of_i, const std::array<double, 3>& of_j) {
       Eigen::VectorXcd row = Eigen::VectorXcd::Zero(unknowns);
       for (int r = 0; r < 3; ++r) {
         row(3 * contact.i + r) += of_i[r];
         row(3 * contact.j + r) += of_j[r];
       }
-      Eigen::RowVector3cd affine;
-      for (int e = 0; e < 3; ++e) affine(e) = dot(strains[e] * assembly.branch(contact), direction);
-      k += spring * row * row.transpose();
-      f += spring * row * affine;
-      stiffness += spring * affine.transpose() * affine;
+      return row;
     };
-    add(springs[c].kN * law.normal.factor(frequency), g.i.normal, g.j.normal, frame.normal);
-    add(springs[c].kT * law.tangential.factor(frequency), g.i.tangential, g.j.tangential, frame.tangent());
+    const auto add = [&](Amplitude spring, const Eigen::VectorXcd& row, Vec2 along, const Eigen::VectorXcd& other,
+                         Vec2 across) {
+      Eigen::RowVector3cd affine, of_other;
+      for (int e = 0; e < 3; ++e) {
+        affine(e) = dot(strains[e] * assembly.branch(contact), along);
+        of_other(e) = dot(strains[e] * assembly.branch(contact), across);
+      }
+      k += spring * row * other.transpose();
+      f += spring * row * of_other;
+      stiffness += spring * affine.transpose() * of_other;
+    };
+    const Vec2 n = frame.normal, t = frame.tangent();
+    const Eigen::VectorXcd stretch = row_of(g.i.normal, g.j.normal), slip = row_of(g.i.tangential, g.j.tangential);
+    add(springs[c].kN * law.normal.factor(frequency), stretch, n, stretch, n);
+    add(springs[c].kT * law.tangential.factor(frequency), slip, t, slip, t);
+    if (!springs.prestressed()) continue;
+    const Eigen::VectorXcd apart = row_of({-n.x, -n.y, 0}, {n.x, n.y, 0}),
+                           aside = row_of({-t.x, -t.y, 0}, {t.x, t.y, 0});
+    const double l = norm(assembly.branch(contact));
+    add(assembly.contact_normal_force[c] / l, aside, t, aside, t);
+    add(-assembly.contact_tangential_force[c] / l, apart, n, aside, t);
+    add(-assembly.contact_tangential_force[c] / l, aside, t, apart, n);
   }
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     for (const Eigen::Index e : {3 * static_cast<Eigen::Index>(d), 3 * static_cast<Eigen::Index>(d) + 1}) {
@@ -177,6 +205,47 @@ TEST_CASE("random_networks_have_the_complex_stiffness_of_dense_algebra") {
       if (sample.name != "hexagonal") break;
     }
   }
+}
+
+TEST_CASE("under_forces_at_rest_the_complex_stiffness_is_that_of_dense_algebra") {
+  const bool periodic = GENERATE(true, false);
+  for (const Sample& sample : assemblies(periodic)) {
+    if (sample.name == "square") continue;
+    const ContactSprings elastic = random_springs(sample.assembly, 0.1, 5);
+    const Assembly assembly = with_forces(sample.assembly, elastic, 0.05);
+    const ContactSprings springs = elastic.with_prestress(prestress_of(assembly));
+    std::vector<std::uint8_t> held(assembly.size(), 0);
+    if (periodic) held[0] = 1;
+    if (!periodic) held = boundary_discs(assembly);
+    const HomogenizeOptions options{.boundary = periodic ? Boundary::periodic : Boundary::displacement};
+    for (const Viscoelasticity& law : pairs_of_models()) {
+      if (!keeps_forces(law.normal) || !keeps_forces(law.tangential)) continue;
+      const HarmonicStiffness c = harmonic(assembly, springs, law, 0.7, options);
+      const DenseStiffness exact = dense_stiffness(assembly, springs, law, 0.7, held);
+      const DenseStiffness without = dense_stiffness(assembly, elastic, law, 0.7, held);
+      const double difference = complex_difference(c, exact.storage, exact.loss);
+      CAPTURE(sample.name, periodic, to_string(law.normal.model), to_string(law.tangential.model), difference,
+              c.condition, relative_difference(without.storage, exact.storage));
+      CHECK(difference < 2e-13 * std::max(1.0, 1e-2 * c.condition));
+      CHECK(relative_difference(without.storage, exact.storage) > 1e-3);
+      CHECK(c.error_bound < 1e-12 * (largest(c.storage) + largest(c.loss)));
+    }
+  }
+}
+
+TEST_CASE("springs_that_lose_their_force_and_forces_that_buckle_are_refused") {
+  const ContactSprings elastic(SpringConstants{1e9, 0.5e9});
+  const Assembly cell = with_forces(assemblies(true)[2].assembly, elastic, 0.02);
+  const ContactSprings springs = elastic.with_prestress(prestress_of(cell));
+  const auto refused = [&](const ViscoelasticSpring& normal, const ContactSprings& of) {
+    return message_of([&] { harmonic(cell, of, {normal, {}}, 1); });
+  };
+  CHECK_THAT(refused({.model = SpringModel::maxwell, .time = 1}, springs), Catch::Contains("flows until it carries"));
+  CHECK_THAT(refused({.model = SpringModel::table, .table = {{0.1, 1}, {2, 2}}}, springs),
+             Catch::Contains("stiffness at rest is not known"));
+  CHECK_THAT(
+      refused({.model = SpringModel::kelvin_voigt, .time = 1}, elastic.with_prestress(springs.scaled_prestress(-100))),
+      Catch::Contains("motions would grow"));
 }
 
 TEST_CASE("without_loss_the_stiffness_is_the_elastic_one") {

@@ -35,9 +35,12 @@ void check_harmonic(const ContactSprings& springs, const Viscoelasticity& viscoe
               "the relaxation of the normal and the tangential spring does not determine that of bending",
               "Take kM and bond_width out, or [viscoelastic]");
   }
-  if (springs.prestressed()) {
-    bad_input("forces at rest count, and the springs are viscoelastic",
-              "their geometric stiffness is that of elastic springs alone", "Use effects.prestress = \"off\"");
+  for (const ViscoelasticSpring* spring : {&viscoelasticity.normal, &viscoelasticity.tangential}) {
+    if (!springs.prestressed() || keeps_forces(*spring)) continue;
+    bad_input(fmt::format("forces at rest count, and a spring is of the model \"{}\"", to_string(spring->model)),
+              spring->model == SpringModel::maxwell ? "its dashpot flows until it carries none"
+                                                    : "its stiffness at rest is not known, nor what it carries then",
+              "Use kelvin_voigt or standard_solid, or effects.prestress = \"off\"");
   }
   if (options.boundary == Boundary::traction) {
     bad_input("the boundary is traction, and the springs are viscoelastic",
@@ -82,15 +85,23 @@ struct HarmonicMotion {
   }
 };
 
+/// Complex amplitudes of a contact, m and rad.
+struct ContactAmplitudes {
+  DeformationOf<Complex> deformation;
+  Complex theta_i, theta_j;
+};
+
 /// The matrix K = K' + i K'' of one frequency on the unknowns of the elastic one, which hold all zero-energy modes. All
 /// springs lie in one quarter of the complex plane, so that exp(-i pi/4) K has a positive definite real part wherever
-/// no mechanism is, and K is singular for mechanisms alone.
+/// no mechanism is, and K is singular for mechanisms alone. Forces at rest add their geometric stiffness to K': with
+/// springs that keep them K' is at least the elastic matrix, which is positive definite then.
 class HarmonicSystem {
  public:
   HarmonicSystem(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
-                 const ContactSprings& elastic, Complex normal, Complex tangential)
-      : storage_(parts(elastic, normal.real(), tangential.real())),
-        loss_(parts(elastic, normal.imag(), tangential.imag())),
+                 const ContactSprings& elastic, Complex normal, Complex tangential, double unit)
+      : storage_(parts(elastic, normal.real() / unit, tangential.real() / unit)
+                     .with_prestress(elastic.scaled_prestress(1 / unit))),
+        loss_(parts(elastic, normal.imag() / unit, tangential.imag() / unit).with_prestress({})),
         stored_{assembly, graph, storage_, unknowns},
         lost_{assembly, graph, loss_, unknowns},
         rows_(row_sums(stored_)) {
@@ -138,13 +149,15 @@ class HarmonicSystem {
     return motion;
   }
 
-  /// Stretch and slip of a contact, complex amplitudes, m.
-  [[nodiscard]] DeformationOf<Complex> deformation(const Tensor2& gradient, const HarmonicMotion& motion,
-                                                   std::size_t contact) const {
-    const ContactDeformation x = deformation_of(stored_, motion.in_phase, gradient, contact);
-    const ContactDeformation y = deformation_of(stored_, motion.out_of_phase, {}, contact);
-    return {{x.normal, y.normal}, {x.tangential, y.tangential}};
+  [[nodiscard]] ContactAmplitudes motion_of_contact(const Tensor2& gradient, const HarmonicMotion& motion,
+                                                    std::size_t contact) const {
+    const ContactMotion x = motion_of(stored_, motion.in_phase, gradient, contact);
+    const ContactMotion y = motion_of(stored_, motion.out_of_phase, {}, contact);
+    return {{{x.deformation.normal, y.deformation.normal}, {x.deformation.tangential, y.deformation.tangential}},
+            {x.theta_i, y.theta_i},
+            {x.theta_j, y.theta_j}};
   }
+  [[nodiscard]] const ContactPrestress* prestress(std::size_t contact) const { return storage_.prestress(contact); }
   [[nodiscard]] SpringConstantsOf<Complex> springs_of(std::size_t contact) const {
     const SpringConstants storage = storage_[contact], loss = loss_[contact];
     return {{storage.kN, loss.kN}, {storage.kT, loss.kT}};
@@ -247,14 +260,20 @@ void sum_harmonic(const SampleSolver& sample, const HarmonicSystem& system, cons
   const Sums sums = contact_sums<std::tuple_size_v<Sums>>(assembly.contacts.size(), [&](std::size_t c, Sums& total) {
     const Contact& contact = assembly.contacts[c];
     const SpringConstantsOf<Complex> k = system.springs_of(c);
-    std::array<DeformationOf<Complex>, 3> d;
+    const ContactPrestress* const prestress = system.prestress(c);
+    std::array<ContactAmplitudes, 3> m;
     double largest_force = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      d[a] = system.deformation(unit_gradients[a], motions[a], c);
-      largest_force = std::max(largest_force, std::abs(k.kN * d[a].normal) + std::abs(k.kT * d[a].tangential));
+      m[a] = system.motion_of_contact(unit_gradients[a], motions[a], c);
+      const DeformationOf<Complex>& d = m[a].deformation;
+      largest_force = std::max(largest_force, std::abs(k.kN * d.normal) + std::abs(k.kT * d.tangential));
     }
     const auto energy = [&](std::size_t a, std::size_t b) {
-      return k.kN * d[a].normal * d[b].normal + k.kT * d[a].tangential * d[b].tangential;
+      const DeformationOf<Complex>&d = m[a].deformation, &e = m[b].deformation;
+      const Complex of_springs = k.kN * d.normal * e.normal + k.kT * d.tangential * e.tangential;
+      return prestress == nullptr ? of_springs
+                                  : of_springs + prestress_form(*prestress, d, m[a].theta_i, m[a].theta_j, e,
+                                                                m[b].theta_i, m[b].theta_j);
     };
     add_triangle(total.data(), [&](std::size_t a, std::size_t b) { return energy(a, b).real(); });
     add_triangle(total.data() + pairs, [&](std::size_t a, std::size_t b) { return energy(a, b).imag(); });
@@ -292,8 +311,8 @@ HarmonicStiffness at_frequency(const SampleSolver& sample, const Viscoelasticity
   DegreesOfFreedom unknowns = elastic.unknowns();
   for (const std::size_t k : elastic.factor().null_components()) unknowns.held[k] = DegreesOfFreedom::supported;
   check_memory(estimate_complex(*elastic.symbolic(), unknowns), options.solver.memory_limit);
-  HarmonicSystem system(sample.assembly(), elastic.graph(), unknowns, sample.springs(), result.normal / unit,
-                        result.tangential / unit);
+  HarmonicSystem system(sample.assembly(), elastic.graph(), unknowns, sample.springs(), result.normal,
+                        result.tangential, unit);
   system.factorize(all.times);
   Stopwatch watch;
   std::vector<HarmonicMotion> motions;
@@ -354,6 +373,10 @@ ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const Con
   elastic.boundary = options.boundary;
   elastic.effects = derive_effects(assembly, springs, options.rotation);
   const SampleSolver sample = strain_sample(assembly, springs, of_fronts, elastic);
+  if (springs.prestressed() && sample.solver().factor().report().negative_pivots.value_or(0) > 0)
+    computation_failed("the forces at rest are larger than the springs keep in balance",
+                       "motions would grow, not follow the strain",
+                       "Use smaller forces at rest, stiffer springs, or see what 'equidem stability' finds");
   ViscoelasticStiffness result;
   result.times = elastic.times;
   result.solver = "UMFPACK LU of complex numbers";

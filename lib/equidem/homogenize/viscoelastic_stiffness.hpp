@@ -23,8 +23,8 @@ struct HarmonicStiffness {
   double frequency = 0;                     ///< Hz
   std::complex<double> normal, tangential;  ///< springs over the elastic ones
   /// Pa, symmetric part of the stress by strain (Voigt, engineering shear): C = 1/A sum kN dn_a dn_b + kT ds_a ds_b
-  /// over the deformations by unit strains a and b, without conjugation. It is stationary at the motions, so that its
-  /// error is the square of theirs.
+  /// over the deformations by unit strains a and b, without conjugation, with the form of forces at rest where they
+  /// count. It is stationary at the motions, so that its error is the square of theirs.
   Matrix3 storage{}, loss{};
   double relative_residual = 0;  ///< largest of the load cases
   double condition = 0;          ///< as that of EffectiveStiffness
@@ -53,9 +53,9 @@ SolveEstimate estimate_viscoelastic(const Assembly& assembly, const ContactSprin
 /// \param springs elastic; those of each contact times the factors of `viscoelasticity` are its complex springs
 /// \param frequencies Hz, > 0
 /// \param options boundary periodic or displacement
-/// \throws Error as effective_stiffness; (bad_input) on negative springs, whose motions would grow, on tractions at the
-///         boundary, frequencies that are not positive or outside a table; (computation_failed) where the springs of a
-///         frequency are too far apart; ErrorWith<ViscoelasticStiffness> behind the first frequency
+/// \throws Error as effective_stiffness; (bad_input) on negative springs, whose motions would grow, on forces at rest of
+///         springs that do not keep them, on tractions at the boundary, frequencies that are not positive or outside a
+///         table; (computation_failed) where the springs of a frequency are too far apart or forces at rest buckle; ErrorWith<ViscoelasticStiffness> behind the first frequency
 ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                              const Viscoelasticity& viscoelasticity,
                                              std::span<const double> frequencies,

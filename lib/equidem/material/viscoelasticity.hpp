@@ -55,6 +55,11 @@ struct Viscoelasticity {
   ViscoelasticSpring normal, tangential;
 };
 
+/// Whether the spring carries at rest what the elastic one does, whatever has happened before.
+inline bool keeps_forces(const ViscoelasticSpring& spring) {
+  return spring.model != SpringModel::maxwell && spring.model != SpringModel::table;
+}
+
 /// \param of "normal", "tangential", for messages
 /// \throws Error (bad_input) where a number is out of range, frequencies of the table do not ascend, or a factor has a
 ///         negative real part (unstable) or imaginary part (it would yield energy in every cycle)

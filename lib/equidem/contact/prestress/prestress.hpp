@@ -80,9 +80,10 @@ void add_prestress(const ContactPrestress& g, const DeformationOf<Number>& d, Nu
 }
 
 /// The form of two deformations a and b: a . G b, N.
-inline double prestress_form(const ContactPrestress& g, const ContactDeformation& a, double a_i, double a_j,
-                             const ContactDeformation& b, double b_i, double b_j) {
-  ContactResponse<double> of_b;
+template <typename Number>
+Number prestress_form(const ContactPrestress& g, const DeformationOf<Number>& a, Number a_i, Number a_j,
+                      const DeformationOf<Number>& b, Number b_i, Number b_j) {
+  ContactResponse<Number> of_b;
   add_prestress(g, b, b_i, b_j, of_b);
   return of_b.force.normal * a.normal + of_b.force.tangential * a.tangential - of_b.moment_i * a_i -
          of_b.moment_j * a_j;
