@@ -55,7 +55,8 @@ SolveEstimate estimate_viscoelastic(const Assembly& assembly, const ContactSprin
 /// \param options boundary periodic or displacement
 /// \throws Error as effective_stiffness; (bad_input) on negative springs, whose motions would grow, on forces at rest of
 ///         springs that do not keep them, on tractions at the boundary, frequencies that are not positive or outside a
-///         table; (computation_failed) where the springs of a frequency are too far apart or forces at rest buckle; ErrorWith<ViscoelasticStiffness> behind the first frequency
+///         table; (computation_failed) where the springs of a frequency are too far apart or forces at rest buckle;
+///         ErrorWith<ViscoelasticStiffness> behind the first frequency
 ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                              const Viscoelasticity& viscoelasticity,
                                              std::span<const double> frequencies,
