@@ -153,7 +153,7 @@ void prepare(const CommonOptions& options) {
 }
 
 /// The key that --seed sets: a packing has a seed of its own.
-static const char* seed_key(const CommonOptions& options) {
+const char* seed_key(const CommonOptions& options) {
   const TomlValue root = casefile::read_document(options.case_file, options.set);
   const TomlValue* assembly = root.find("assembly");
   const TomlValue* kind = assembly != nullptr && assembly->is_table() ? assembly->find("kind") : nullptr;

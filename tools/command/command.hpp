@@ -93,13 +93,16 @@ void add_require_stable(CLI::App& command, CommonOptions& options);
 
 /// Applies --threads and --quiet.
 void prepare(const CommonOptions& options);
+/// The key that --seed sets: packing.seed, or assembly.seed.
+const char* seed_key(const CommonOptions& options);
 /// --set, and --seed as an assignment of its key.
 std::vector<std::string> overrides_of(const CommonOptions& options);
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case
+/// \param note behind it
 template <typename Resolved>
-void write_case(const CommonOptions& options, const Resolved& resolved) {
-  if (options.out) write_file(*options.out / "case.toml", to_toml(resolved, *options.out), true);
+void write_case(const CommonOptions& options, const Resolved& resolved, const std::string& note = {}) {
+  if (options.out) write_file(*options.out / "case.toml", to_toml(resolved, *options.out) + note, true);
 }
 
 /// What a verb writes beside its results: a table, a picture, the case. It is declared before the computation, which
@@ -119,9 +122,10 @@ struct OutputPart {
 std::vector<std::string> plot_files(const std::string& name);
 /// case.toml, which reproduces the computation.
 /// \param resolved returns a Case, or the document of another kind of case, that the part keeps
+/// \param note behind it
 template <typename Resolved>
-OutputPart case_part(const Resolved& resolved) {
-  const auto write = [=](const CommonOptions& into) { write_case(into, resolved()); };
+OutputPart case_part(const Resolved& resolved, const std::string& note = {}) {
+  const auto write = [=](const CommonOptions& into) { write_case(into, resolved(), note); };
   return {"case.toml", write, OutputPart::page, {"case.toml"}};
 }
 

@@ -110,7 +110,7 @@ void add_deep_overlap(Results& results, const Assembly& assembly) {
 /// Says where contacts join discs that do not just touch, as edges of a triangulation do.
 void add_gaps(Results& results, const GapRange& gaps, bool found) {
   constexpr double noticeable = 0.01;
-  results.set("largest_overlap", std::max(-gaps.smallest, 0.0)).set("largest_gap", std::max(gaps.largest, 0.0));
+  results.set("largest_overlap", std::max(0.0, -gaps.smallest)).set("largest_gap", std::max(0.0, gaps.largest));
   if (found || (gaps.smallest > -noticeable && gaps.largest < noticeable)) return;
   results.line("");
   if (gaps.smallest > -noticeable) {

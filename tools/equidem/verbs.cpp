@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
 #include "equidem/core/names.hpp"
@@ -67,6 +70,14 @@ Case read_case(const CommonOptions& options) {
   Case resolved = read_case(options.case_file, overrides_of(options));
   check_taken(resolved, options.verb, entry_named(verbs, options.verb, "verb").takes);
   return resolved;
+}
+
+CaseDocument read_document(const std::string& verb, const CommonOptions& options) {
+  prepare(options);
+  if (verb == "pack") return read_pack_case(options.case_file, overrides_of(options));
+  if (verb == "run" && describes_grains(casefile::read_document(options.case_file, options.set)))
+    return read_grain_case(options.case_file, options.set);
+  return read_case(options);
 }
 
 void check_taken(const Case& resolved, std::string_view taker, const Takes& takes) {

@@ -60,6 +60,10 @@ Run declare_study(CLI::App& command);
 /// \throws Error (bad_input) as read_case and check_taken
 Case read_case(const CommonOptions& options);
 
+/// The case as a verb reads it, whatever its kind.
+/// \throws Error (bad_input) as the reader of the verb
+CaseDocument read_document(const std::string& verb, const CommonOptions& options);
+
 /// \param taker of the case
 /// \throws Error (bad_input), with the line of the case file, where the case asks for an effect that the taker does
 ///         not take

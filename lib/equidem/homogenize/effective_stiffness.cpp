@@ -97,7 +97,7 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
     for (std::size_t c = 0; c < at_rest.size(); ++c) at_rest[c] = force_at_rest(assembly, c);
     add_stress_at_rest(macroscopic_stress(assembly, at_rest), result);
   }
-  if (!std::isfinite(largest_entry(result.stiffness))) {
+  if (!std::isfinite(8 * largest_entry(result.stiffness))) {  // sums of entries, too
     bad_input("the stiffness overflows a double", "the largest is 1.8e308", "Check the units of sizes and springs");
   }
   return result;
@@ -128,7 +128,11 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
                        "rounding hides the energy of " + strain,
                        "Choose another kT/kN; 'equidem stability' finds the limit");
   }
-  refuse_spread(spring_spread(assembly, springs));
+  constexpr double all_digits = 1e8;
+  const double spread = spring_spread(assembly, springs);
+  if (spread > all_digits) refuse_spread(spread);
+  computation_failed("the network is nearly floppy", "rounding hides the energy of " + strain,
+                     "Add contacts, or tangential springs where kT is 0");
 }
 
 }  // namespace

@@ -425,7 +425,8 @@ std::string continued_part(CommonOptions options, const std::filesystem::path& f
 }
 
 /// Samples of an earlier run of the same case.
-std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool resume) {
+/// \param note of the files that the case reads
+std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool resume, const std::string& note) {
   if (!resume) return {};
   if (!options.out)
     bad_input("--resume has nothing to continue", "the samples done lie in the folder of --out", "Add --out DIR");
@@ -435,8 +436,10 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   stored.verb = options.verb;
   stored.case_file = *options.out / "case.toml";
   stored.quiet = options.quiet;
-  if (continued_part(stored, *options.out) != continued_part(options, *options.out)) {
-    bad_input_at(stored.case_file.string(), "the samples there are of another case", "they would not fit together",
+  if (continued_part(stored, *options.out) != continued_part(options, *options.out) ||
+      !read_file(stored.case_file).ends_with(note)) {
+    bad_input_at(stored.case_file.string(), "the samples there are of another case",
+                 "it, or a file that it reads, has changed",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
   return read_samples(table);
@@ -635,10 +638,11 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const std::vector<OutputPart> parts = output_parts(made);
   OutputPlan(options, resume).expect_results(parts);
   const auto lock = lock_out(options);
-  const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
+  const std::string note = options.out ? note_of_files(resolved.document) : std::string();
+  const std::vector<EnsembleSample> kept = samples_to_keep(options, resume, note);
 
   const auto& folder = options.out;
-  write_case(options, resolved);
+  write_case(options, resolved, note);
   const auto save = [&](const std::vector<EnsembleSample>& done) {
     if (folder) write_samples(*folder / "samples.csv", samples_table(with_kept(done, kept)));
   };
@@ -722,7 +726,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
     CommonOptions chosen = options;
     chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}}}", sampled.chosen.discs,
                                      sampled.chosen.samples, accuracy));
-    write_case(options, read_case(chosen));
+    write_case(options, read_case(chosen), note_of_files(resolved.document));
   }
   results.append(ensemble_results(result));
   if (sampled.estimated > 0 || !made->failure) results.append(accuracy_results(reached));

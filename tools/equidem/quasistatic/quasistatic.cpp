@@ -457,11 +457,12 @@ class PathCheckpoint {
 };
 
 /// Goes on with an earlier computation of the same case.
+/// \param note of the files that the case reads
 /// \return the frames so far; none: there are none, or the path begins anew
-std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence) {
+std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence, const std::string& note) {
   const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
   if (!std::filesystem::exists(table) || !std::filesystem::exists(text)) return {};
-  const FreeKeysOfPath before = check_same_path(text, sequence.problem.resolved);
+  const FreeKeysOfPath before = check_same_path(text, sequence.problem.resolved, note);
   StoredEvents stored = read_events(table, sequence.run(), sequence.scene());
   std::optional<FileMark> frames;
   const bool with_frames = sequence.problem.resolved.quasistatic.frame_every != 0;
@@ -564,6 +565,7 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
 
 /// A path, and how it was left.
 struct ComputedPath {
+  std::string note{};  ///< of the files that the case reads
   std::optional<Sequence> sequence{};
   Stop stop{};
 };
@@ -585,7 +587,7 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
   if (keeps_state(resolved)) events.emplace_back(path_checkpoint_name);
   return {{"the events", tell_unsaved, OutputPart::folder, std::move(events)},
           {"the state", write_state_at_end, OutputPart::folder, names_of_end_state(wanted)},
-          case_part([=]() -> const Case& { return path->sequence->problem.resolved; }),
+          case_part([=]() -> const Case& { return path->sequence->problem.resolved; }, path->note),
           {"the figures", draw, OutputPart::page, names_of_figures(wanted)}};
 }
 
@@ -596,6 +598,7 @@ int quasistatic(const QuasistaticOptions& given) {
   const Case resolved = read_case(options);
   if (given.resume) options.overwrite = true;
   const auto path = std::make_shared<ComputedPath>();
+  if (options.out) path->note = note_of_files(resolved.document);
   const std::vector<OutputPart> parts = output_parts(resolved, path);
   OutputPlan(options).expect_results(parts);
   const auto lock = lock_out(options);
@@ -604,11 +607,11 @@ int quasistatic(const QuasistaticOptions& given) {
   sequence.begin();
   std::optional<FileMark> frames;
   if (given.resume) {
-    frames = resume(options, sequence);
+    frames = resume(options, sequence, path->note);
   } else if (options.out && keeps_state(resolved)) {
     PathCheckpoint(options, sequence).remove();
   }
-  write_case(options, sequence.problem.resolved);
+  write_case(options, sequence.problem.resolved, path->note);
   const Stop& stop = path->stop = go(options, sequence, frames);
   const StopsHeldBack held_back(stop.interrupted);
   Results results = quasistatic_results(sequence);

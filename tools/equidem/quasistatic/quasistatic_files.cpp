@@ -182,7 +182,7 @@ std::string deciding_keys_of_path(const Case& resolved, const std::filesystem::p
   return to_toml(deciding_tables(resolved.document, Decided::path), folder);
 }
 
-FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved) {
+FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved, const std::string& note) {
   const TomlValue kept = casefile::read_document(there, {});
   const TomlValue old_keys = deciding_tables(kept, Decided::path);
   const TomlValue new_keys =
@@ -196,6 +196,10 @@ FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& r
                  fmt::format("{} another --out, or leave out --resume and pass --overwrite",
                              found->of_earlier_version ? "Choose" : "Take the value there, or choose"));
   }
+  if (!read_file(there).ends_with(note))
+    bad_input_at(there.string(), "the events there are of another case",
+                 "a file that the case reads has changed since, or an earlier version wrote them",
+                 "Put the file back as it was, or choose another --out, or leave out --resume and pass --overwrite");
   const auto number = [&](const char* key) {
     const TomlValue& value = value_at(kept, key);
     return value.is_number() ? value.integer : 0;

@@ -46,9 +46,10 @@ struct FreeKeysOfPath {
 };
 
 /// \param there case.toml of the path so far
+/// \param note of the files that the case reads (note_of_files)
 /// \return the keys that it had
-/// \throws Error (bad_input) where a key that decides the path differs, which the message names
-FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved);
+/// \throws Error (bad_input) where a key that decides the path differs, which the message names, or such a file
+FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved, const std::string& note);
 
 /// \param events of the path so far
 /// \throws Error (bad_input) where max_events was lowered below them

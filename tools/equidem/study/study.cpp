@@ -262,6 +262,23 @@ double measured_number(const Delivery& result, const std::string& measure) {
   return *number;
 }
 
+/// What decides the values of a study: its file, the case and the files that it reads.
+std::string deciding_text(const std::filesystem::path& path, CommonOptions options) {
+  const StudyCase resolved = read_study_case(path);
+  options.verb = resolved.verb;
+  options.case_file = resolved.case_file;
+  std::string text = to_toml(resolved.document, path.parent_path());
+  for (const StudyPoint& point : points_of(resolved)) {
+    options.set = point.overrides;
+    const auto refused = failure_of([&] {
+      const TomlValue document = read_document(resolved.verb, options).document;
+      text += to_toml(document, path.parent_path()) + note_of_files(document);
+    });
+    if (refused) text += refused->what();
+  }
+  return text;
+}
+
 /// Each setting is a run of a verb, in this process; on a dry run a dry run of it, whose memory is measured.
 Study study_of_file(const std::filesystem::path& path, const CommonOptions& options) {
   const StudyCase resolved = read_study_case(path);
@@ -431,8 +448,8 @@ int run_verb(const StudyVerb& verb) {
   set_progress_shown(!verb.common.quiet);
   const Study study = study_of_file(verb.file, verb.common);
   if (verb.common.dry_run) return dry_run_study(verb, study);
-  const std::string identity =
-      study.checksum(fmt::format("{} seed {} threads {}", machine_text(), verb.options.seed, thread_count()));
+  const std::string identity = study.checksum(fmt::format("{} seed {} threads {} {}", machine_text(), verb.options.seed,
+                                                          thread_count(), deciding_text(verb.file, verb.common)));
   const auto lock = lock_out(verb.common);
   StudySamples kept = samples_to_keep(verb, study, identity);
   const auto& folder = verb.common.out;

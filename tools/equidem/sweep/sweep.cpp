@@ -279,28 +279,42 @@ void check_verb(const std::string& name) {
 /// The case as the verb reads it.
 /// \throws Error as the reader of the verb
 CaseDocument read_base(const std::string& verb, const CommonOptions& options) {
-  prepare(options);
-  const std::vector<std::string> overrides = overrides_of(options);
-  if (verb == "pack") return read_pack_case(options.case_file, overrides);
-  if (verb == "run" && describes_grains(casefile::read_document(options.case_file, options.set))) {
-    if (options.seed)
-      bad_input_at("--seeds", "nothing in a case of grains is random", "all points would be equal", "Leave it out");
-    return read_grain_case(options.case_file, options.set);
-  }
-  return read_case(options);
+  if (options.seed && verb == "run" && describes_grains(casefile::read_document(options.case_file, options.set)))
+    bad_input_at("--seeds", "nothing in a case of grains is random", "all points would be equal", "Leave it out");
+  return read_document(verb, options);
 }
 
-/// A key that no case has but whose last part is nearly "ratio".
+/// A name without a table, or of [springs], that is nearly "ratio".
 void refuse_misspelt_ratio(const SweptKey& key) {
-  const std::string last = key.name.substr(key.name.rfind('.') + 1);
+  const std::size_t dot = key.name.rfind('.');
+  if (dot != std::string::npos && key.name.substr(0, dot) != "springs") return;
   const std::vector<std::string> ratio{"ratio"};
-  if (unit_of_case_key(key.name) || !nearest(last, ratio)) return;
+  if (unit_of_case_key(key.name) || !nearest(key.name.substr(dot + 1), ratio)) return;
   bad_input_at("--key", fmt::format("there is no key '{}'", key.name), "kT/kN at the kN of the case has the name ratio",
                "Write --key ratio");
 }
 
+/// The key of a case that a swept one sets.
+std::string key_set_by(const SweepOptions& options, const SweptKey& key) {
+  return key.name == "ratio" ? "springs.kT" : key.name == SweepPlan::seed ? seed_key(options.common) : key.name;
+}
+
+/// Two keys that set the same one: the second would undo the first.
+void check_different(const SweepOptions& options, const SweepPlan& plan) {
+  std::map<std::string, std::string> setters;
+  for (const SweptKey& key : plan.keys) {
+    const std::string set = key_set_by(options, key);
+    const auto [other, is_new] = setters.emplace(set, key.name);
+    if (is_new) continue;
+    bad_input(fmt::format("{} and {} are varied", other->second == SweepPlan::seed ? "--seeds" : other->second,
+                          key.name == SweepPlan::seed ? "--seeds" : key.name),
+              fmt::format("both set {}", set), "Leave out one of them");
+  }
+}
+
 /// The keys exist, and the case has a seed where seeds are given.
 void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
+  check_different(options, plan);
   for (const SweptKey& key : plan.keys) {
     CommonOptions first = options.common;
     if (key.name != "ratio") refuse_misspelt_ratio(key);
@@ -329,10 +343,20 @@ std::string shortened(const std::vector<std::string>& values) {
                      values.back(), values.size());
 }
 
-/// The case with what is varied as comments, which are no part of what has to agree for --resume.
+/// What has to agree for --resume: the case, and the files that it or a value of a key names.
+std::string deciding_text(const Sweep& sweep) {
+  const auto folder = sweep.options.common.case_file.parent_path();
+  std::vector<std::filesystem::path> named;
+  for (const SweptKey& key : sweep.plan.keys)
+    for (const std::string& value : key.values) named.push_back(folder / value);
+  return heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.common.out) +
+         note_of_files(sweep.base.document, named);
+}
+
+/// The case with what is varied as comments.
 std::string text_of_case(const Sweep& sweep) {
   const SweepPlan& plan = sweep.plan;
-  std::string text = heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.common.out);
+  std::string text = deciding_text(sweep);
   text += fmt::format("\n# Varied {}:\n", plan.side_by_side ? "side by side" : "in all combinations");
   for (const SweptKey& key : plan.keys) text += fmt::format("# {} = {}\n", key.name, shortened(key.values));
   return text;
@@ -346,9 +370,9 @@ std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
     bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
   const auto table = *out / Sweep::table_name;
   if (!std::filesystem::exists(table)) return {};
-  if (!read_file(*out / Sweep::case_name).starts_with(heading_of(sweep) + to_toml(sweep.base.document, *out))) {
+  if (!read_file(*out / Sweep::case_name).starts_with(deciding_text(sweep))) {
     bad_input_at((*out / Sweep::case_name).string(), "the sweep there is of another case",
-                 "its points would not fit together",
+                 "it, or a file that it reads, has changed",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
   return read_sweep_points(table, sweep.plan);

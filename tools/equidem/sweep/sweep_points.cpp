@@ -132,19 +132,33 @@ void check_lists(const SweepPlan& plan) {
   }
 }
 
-/// [springs] with kT at the given ratio to kN, whatever file they were read from.
-std::string springs_of_ratio(const TomlValue& base, const std::string& ratio) {
-  const TomlValue& springs = *base.find("springs");
-  const double kT = *number_from<double>(ratio) * springs.find("kN")->real;
-  std::string entries;
-  for (const TomlEntry& entry : springs.entries) {
-    const TomlValue& value = entry.value;
-    entries += fmt::format("{}{} = {}", entries.empty() ? "" : ", ", entry.name,
-                           entry.name == "kT"  ? toml_number(kT)
-                           : value.is_number() ? toml_number(value.real)
-                                               : toml_text(value.text));
+/// A value as it stands in a file.
+std::string toml_of(const std::string& value) {
+  const bool bare = number_from<double>(value) || value == "true" || value == "false" || value == "none";
+  return bare ? value : toml_text(value);
+}
+
+std::string toml_of(const TomlValue& value) {
+  if (value.is_number()) return toml_number(value.real);
+  return value.type == TomlValue::Type::boolean ? (value.boolean ? "true" : "false") : toml_text(value.text);
+}
+
+constexpr std::string_view springs_table = "springs.";
+
+/// [springs] of a point, whatever file they were read from: with the values of its keys, and kT by the ratio to kN.
+std::string springs_of_ratio(const SweepPlan& plan, const std::vector<std::string>& values, const TomlValue& base) {
+  std::map<std::string, std::string> entries;
+  for (const TomlEntry& entry : base.find("springs")->entries) entries[entry.name] = toml_of(entry.value);
+  double ratio = 0;
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    const std::string& name = plan.keys[k].name;
+    if (name == "ratio") ratio = *number_from<double>(values[k]);
+    if (name.starts_with(springs_table)) entries[name.substr(springs_table.size())] = toml_of(values[k]);
   }
-  return fmt::format("springs={{{}}}", entries);
+  if (const auto kN = number_from<double>(entries["kN"])) entries["kT"] = toml_number(ratio * *kN);
+  return fmt::format("springs={{{}}}", joined(entries, [](const auto& entry) {
+                       return fmt::format("{} = {}", entry.first, entry.second);
+                     }));
 }
 
 }  // namespace
@@ -201,15 +215,15 @@ SweepPlan sweep_plan(const std::string& verb, const std::vector<KeyOptions>& key
 std::vector<std::string> options_of(const SweepPlan& plan, const std::vector<std::string>& values,
                                     const TomlValue& base) {
   std::vector<std::string> options;
+  const bool by_ratio = std::ranges::find(plan.keys, "ratio", &SweptKey::name) != plan.keys.end();
+  if (by_ratio) options = {"--set", springs_of_ratio(plan, values, base)};
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
-    const std::string &name = plan.keys[k].name, &value = values[k];
-    const bool bare = number_from<double>(value) || value == "true" || value == "false" || value == "none";
+    const std::string& name = plan.keys[k].name;
+    if (name == "ratio" || (by_ratio && name.starts_with(springs_table))) continue;
     if (name == SweepPlan::seed) {
-      options.insert(options.end(), {"--seed", value});
-    } else if (name == "ratio") {
-      options.insert(options.end(), {"--set", springs_of_ratio(base, value)});
+      options.insert(options.end(), {"--seed", values[k]});
     } else {
-      options.insert(options.end(), {"--set", fmt::format("{}={}", name, bare ? value : toml_text(value))});
+      options.insert(options.end(), {"--set", fmt::format("{}={}", name, toml_of(values[k]))});
     }
   }
   return options;

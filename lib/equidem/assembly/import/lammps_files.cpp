@@ -11,6 +11,11 @@
 namespace equidem {
 namespace {
 
+/// LAMMPS makes a box orthogonal only where its tilt is 0 (change_box ortho).
+constexpr const char* rectangle_remedy =
+    "Make the sample in a box without tilt, or shear it back in LAMMPS first (change_box all xy final 0 remap), which "
+    "changes its contacts";
+
 /// Columns of the section Atoms; three image flags may follow.
 struct AtomStyle {
   std::string_view name;
@@ -101,8 +106,7 @@ class DataReader {
   }
 
   [[noreturn]] void refuse_triclinic() const {
-    lines_.fail("the box is triclinic", "a cell here is a rectangle along x and y",
-                "Bring it to a rectangle in LAMMPS: change_box all ortho");
+    lines_.fail("the box is triclinic", "a cell here is a rectangle along x and y", rectangle_remedy);
   }
 
   void take_box(const std::map<std::string, std::array<double, 2>>& bounds) {
@@ -334,8 +338,7 @@ class DumpReader {
       low[axis] = finite_number(cells[0], "bound", lines_.number());
       high[axis] = finite_number(cells[1], "bound", lines_.number());
       if (tilted && finite_number(cells[2], "tilt", lines_.number()) != 0)
-        lines_.fail("the box is triclinic", "a cell here is a rectangle along x and y",
-                    "Bring it to a rectangle in LAMMPS: change_box all ortho");
+        lines_.fail("the box is triclinic", "a cell here is a rectangle along x and y", rectangle_remedy);
     }
     frame.box.low = {low[0], low[1]};
     frame.box.high = {high[0], high[1]};

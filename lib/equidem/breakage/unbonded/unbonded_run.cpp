@@ -232,12 +232,17 @@ void UnbondedRun::record_changes(std::span<const ContactStatus> after) {
     events_[k].ties = static_cast<std::int64_t>(events_.size() - first - 1);
 }
 
+double UnbondedRun::strength_of(const NextContactEvent& next) const {
+  const ContactStrengths& strengths = scene_.strengths;
+  return (*next.breaks == BreakMode::tension ? strengths.tension : strengths.shear)[next.contact];
+}
+
 void UnbondedRun::break_bond(const NextContactEvent& next, double lambda_rate) {
   BreakEvent event = event_of(next.contact, *next.breaks);
   event.relative_residual = state_.relative_residual();
   event.ties = next.ties;
   // The gap of t, as one of lambda.
-  if (!releasing()) event.gap = next.gap * next.t * std::abs(lambda_rate / state_.lambda());
+  if (!releasing() && state_.lambda() != 0) event.gap = next.gap * next.t * std::abs(lambda_rate / state_.lambda());
   const std::size_t c = next.contact;
   const double n = state_.normal_coordinate(c), t = state_.forces()[c].tangential;
   ContactStatus status = ContactStatus::stuck;
@@ -334,7 +339,7 @@ void UnbondedRun::go_on() {
   if (!move(t)) return;
   const double lambda_rate = rates_->lambda;
   rates_.reset();
-  if (next.t <= stage && next.breaks && !state_.carries()) {
+  if (next.t <= stage && next.breaks && !state_.carries() && strength_of(next) > 0) {
     end(PathEnd::carries_nothing, "no contact carries more than round-off: the network carries no load");
     return;
   }

@@ -80,6 +80,7 @@ class UnbondedRun final : public EventPath {
   bool move(double t);
   void finish_stage();
   void note_released();
+  [[nodiscard]] double strength_of(const NextContactEvent& next) const;
   void break_bond(const NextContactEvent& next, double lambda_rate);
   void record_changes(std::span<const ContactStatus> after);
 

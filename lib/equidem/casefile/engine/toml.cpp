@@ -8,7 +8,10 @@
 
 #include <toml++/toml.h>
 
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/given.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -346,6 +349,34 @@ std::string to_toml(TomlValue document, const fs::path& folder) {
   std::string out;
   write_table(out, "", document);
   return out;
+}
+
+namespace {
+
+void collect_paths(const TomlValue& value, std::vector<fs::path>& paths) {
+  for (const TomlValue& item : value.items) collect_paths(item, paths);
+  for (const auto& [name, entry] : value.entries)
+    if (entry.path != "output") collect_paths(entry, paths);
+  if (value.is_path) paths.emplace_back(value.text);
+}
+
+}  // namespace
+
+std::string note_of_files(const TomlValue& document, std::span<const fs::path> further) {
+  std::vector<fs::path> paths;
+  collect_paths(document, paths);
+  paths.insert(paths.end(), further.begin(), further.end());
+  Checksum sum;
+  bool any = false;
+  for (const fs::path& path : paths) {
+    std::error_code missing;
+    if (Given<std::string>::find(path) == nullptr && !fs::is_regular_file(path, missing)) continue;
+    const std::string content = read_file(path);
+    sum.add(std::as_bytes(std::span(content)));
+    sum.add(std::uint64_t{content.size()});
+    any = true;
+  }
+  return any ? fmt::format("\n# checksum of the files that the case reads: {}\n", sum.text()) : std::string();
 }
 
 }  // namespace equidem

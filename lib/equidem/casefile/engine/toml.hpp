@@ -96,6 +96,12 @@ TomlValue parse_toml(std::string_view text, const std::string& source);
 /// \param folder of the new file: paths are written relative to it
 std::string to_toml(TomlValue document, const std::filesystem::path& folder);
 
+/// A comment with a checksum of what stands in the files that a document reads, behind which a computation that goes on
+/// later finds out whether they are the same; empty: it reads none. Files that [output] names are written, not read.
+/// \param document its paths as the program opens them
+/// \param further files, of which those that exist count
+std::string note_of_files(const TomlValue& document, std::span<const std::filesystem::path> further = {});
+
 /// How to write a number that TOML does not take as it is: ".7e8", "7.e8", "0,25", "1e8 Pa"; none of other texts.
 struct NumberAdvice {
   std::string why, remedy;

@@ -106,6 +106,8 @@ ScalablePacking packing_options(const TomlValue& root, const PackingTables& tabl
   options.as_dense_as_possible = fraction != nullptr && !fraction->is_number();
   const bool open = tables.sides == PackingBox::Sides::walls && entry_of(options.method).open_top;
   options.box.sides = open ? PackingBox::Sides::open_top : tables.sides;
+  if (const TomlValue* shape = packing.find("shape"); shape != nullptr && !options.shape.discs.empty())
+    with_key(*shape, "discs", [&] { static_cast<void>(centred_clump(options.shape.discs)); });
   at_key(packing, [&] { set_amount(options.amount, options.sizes, options); });
   return options;
 }

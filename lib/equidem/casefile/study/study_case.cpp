@@ -108,6 +108,12 @@ StudyCase parse_study_case(std::string_view content, const std::string& name, co
   if (result.truth == Truth::known && result.relative && result.value == 0)
     fail_at(*study.find("value"), "errors are relative to 0", "they would be infinite", "Set relative = false");
   for (std::size_t k = 0; k < result.varied.size(); ++k) check_varied(repeated(root, "vary")[k], result.varied[k]);
+  std::set<std::string> keys;
+  for (std::size_t k = 0; k < result.varied.size(); ++k)
+    for (const std::string& key : result.varied[k].keys)
+      if (!keys.insert(key).second)
+        fail_at(repeated(root, "vary")[k], "key", fmt::format("{} is varied twice", key),
+                "one setting has one value of it", "Leave it out once");
   if (result.varied.empty())
     fail_at(study, "nothing is varied", "a study compares settings", "Add [[vary]] with key and values");
   const auto refining = std::count_if(result.varied.begin(), result.varied.end(), [](const VariedKey& varied) {

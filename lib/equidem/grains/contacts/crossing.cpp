@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -49,6 +50,23 @@ bool has_ellipse(const GrainSystem& system, const Partners& of) {
   return of.j >= 0 && !system.shapes.parts[of.part_j].is_round();
 }
 
+/// How far a part turns in the step, rad; a disc about its centre does not.
+double turn_of(const GrainSystem& system, std::int32_t body, std::int32_t part_index) {
+  const GrainPart part = system.part(body, part_index);
+  if (part.is_round() && part.offset == Vec2{}) return 0;
+  return std::abs(system.bodies.next[body].angle - system.bodies.motions[body].angle);
+}
+
+/// How far points of the parts of a pair go against each other in the step, at most, m.
+double reach_of_parts(const GrainSystem& system, const Partners& of) {
+  const auto way_of = [&](std::int32_t body, std::int32_t part_index) {
+    const GrainPart part = system.part(body, part_index);
+    return turn_of(system, body, part_index) * (norm(part.offset) + part.a);
+  };
+  const PartWay way = way_of_parts(system, of);
+  return norm(way.after - way.before) + way_of(of.i, of.part_i) + (of.j < 0 ? 0 : way_of(of.j, of.part_j));
+}
+
 /// The error of two ellipses in the step: one approaches with its centre in the other, the normal of an overlap
 /// reverses, an overlap of more than half the smaller short half-axis occurs undetected between the two instants, or
 /// one larger than that half-axis occurs without a contact before. \return nullptr: no error
@@ -65,12 +83,7 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of) 
   const EllipseContact before = contact_at(0), after = contact_at(1);
   if (before.gap < 0 && after.gap < 0 && dot(before.normal, after.normal) < 0) return "pass through";
   if (before.gap < 0) return nullptr;
-  // how far a point of one goes against the other, at most
-  const auto turn = [&](std::int32_t body, const GrainPart& part) {
-    const auto b = static_cast<std::size_t>(body);
-    return std::abs(system.bodies.next[b].angle - system.bodies.motions[b].angle) * part.a;
-  };
-  const double reach = norm(way.after - way.before) + turn(of.i, i.part) + turn(of.j, j.part);
+  const double reach = reach_of_parts(system, of);
   const double small = std::min(i.part.b, j.part.b);
   if (std::min(before.gap, after.gap) > reach) return nullptr;
   const int samples = static_cast<int>(std::min(1000.0, std::ceil(8 * reach / small)));
@@ -83,24 +96,45 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of) 
 /// Displacement over the smallest radius below which no body can cross another.
 constexpr double slow_way = 0.1;
 
-[[noreturn]] void refuse(const GrainSystem& system, const Partners& of, Vec2 way, double room, const char* happening) {
+/// Angle of a part in a step beyond which its contacts would begin and end unseen, and one that resolves them, rad.
+constexpr double quarter_turn = 0.5 * std::numbers::pi, small_turn = 0.1;
+
+std::string name_of_other(const GrainSystem& system, const Partners& of) {
+  if (of.j >= 0) return fmt::format("grain {}", system.bodies.grain_of[of.j]);
+  const Wall& wall = system.scene.walls[~of.j];
+  return wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[~of.j])
+                           : fmt::format("wall \"{}\"", wall.name);
+}
+
+/// \param way of points of the two against each other, m
+[[noreturn]] void refuse(const GrainSystem& system, const Partners& of, double way, double room,
+                         const char* happening) {
   const auto i = static_cast<std::size_t>(of.i);
-  std::string other;
-  if (of.j >= 0) {
-    other = fmt::format("grain {}", system.bodies.grain_of[of.j]);
-  } else {
-    const Wall& wall = system.scene.walls[~of.j];
-    other =
-        wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[~of.j]) : fmt::format("wall \"{}\"", wall.name);
-  }
-  const double speed = norm(way) / system.dt();
   computation_failed(
-      fmt::format("step {}: grain {} would {} {}", system.step, system.bodies.grain_of[i], happening, other),
+      fmt::format("step {}: grain {} would {} {}", system.step, system.bodies.grain_of[i], happening,
+                  name_of_other(system, of)),
       fmt::format("they move {:.4g} m against each other in a step of {:.4g} s, {:.4g} times the radius of the grain",
-                  norm(way), system.dt(), norm(way) / system.bodies.constants[i].radius),
-      norm(way) > room
-          ? fmt::format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through", room / speed)
-          : "Use stiffer contacts, or press less: a shorter step would not hold them");
+                  way, system.dt(), way / system.bodies.constants[i].radius),
+      way > room ? fmt::format("Use a step below {:.3g} s, or stiffer contacts if they are pressed through",
+                               room / way * system.dt())
+                 : "Use stiffer contacts, or press less: a shorter step would not hold them");
+}
+
+/// Refuses turns in which a part that is near another one, or a wall, would touch and leave it unseen.
+/// \param apart distance of the centres of the bodies, or of the centre and the wall, at either end of the step, m
+void check_turns(const GrainSystem& system, const Partners& of, double apart) {
+  const double turn = std::max(turn_of(system, of.i, of.part_i), of.j < 0 ? 0 : turn_of(system, of.j, of.part_j));
+  if (!(turn > quarter_turn)) return;
+  const auto extent = [&](std::int32_t body, std::int32_t part_index) {
+    const GrainPart part = system.part(body, part_index);
+    return norm(part.offset) + part.a;
+  };
+  if (apart > extent(of.i, of.part_i) + (of.j < 0 ? 0 : extent(of.j, of.part_j))) return;
+  computation_failed(fmt::format("step {}: grain {} would turn past {}", system.step, system.bodies.grain_of[of.i],
+                                 name_of_other(system, of)),
+                     fmt::format("one of the two turns by {:.4g} rad in a step of {:.4g} s, and touches in between",
+                                 turn, system.dt()),
+                     fmt::format("Use a step below {:.3g} s", small_turn / turn * system.dt()));
 }
 
 void check_discs(const GrainSystem& system, const Partners& of, const PartWay& parts) {
@@ -114,15 +148,15 @@ void check_discs(const GrainSystem& system, const Partners& of, const PartWay& p
   const double nearest = norm(before + along * way);
   // centres that come this near and change sides were pressed through each other
   if (nearest < 0.5 * sum && dot(before, after) < 0) {
-    refuse(system, of, way, 0.5 * small, "pass through");
+    refuse(system, of, norm(way), 0.5 * small, "pass through");
   }
   // in short steps they would go round each other instead: no centre enters another body
   const double distance = norm(after);
   if (distance < sum - small && distance < norm(before)) {
-    refuse(system, of, way, 0.5 * small, "be pressed into");
+    refuse(system, of, norm(way), 0.5 * small, "be pressed into");
   }
   const bool seen = norm(before) < sum || norm(after) < sum;
-  if (!seen && nearest < sum - 0.5 * small) refuse(system, of, way, 0.5 * small, "pass through");
+  if (!seen && nearest < sum - 0.5 * small) refuse(system, of, norm(way), 0.5 * small, "pass through");
 }
 
 void check_wall(const GrainSystem& system, const Partners& of) {
@@ -133,8 +167,14 @@ void check_wall(const GrainSystem& system, const Partners& of) {
   const Vec2 before = start - place.displacement;
   const Vec2 after = end - place.displacement - system.dt() * place.velocity;
   if (passes_through(system.scene.walls[w], before, after)) {
-    refuse(system, of, after - before, 0.5 * system.bodies.constants[i].radius, "pass through");
+    refuse(system, of, norm(after - before), 0.5 * system.bodies.constants[i].radius, "pass through");
   }
+  const auto distance = [&](const GrainMotion& motion, Vec2 moved) {
+    return nearest(system.scene.walls[w], moved, motion.position).distance;
+  };
+  check_turns(system, of,
+              std::min(distance(system.bodies.motions[i], place.displacement),
+                       distance(system.bodies.next[i], place.displacement + system.dt() * place.velocity)));
 }
 
 void check_parts(const GrainSystem& system, const Partners& of) {
@@ -142,8 +182,14 @@ void check_parts(const GrainSystem& system, const Partners& of) {
   if (!has_ellipse(system, of)) {
     check_discs(system, of, way);
   } else if (const char* happening = crossing_of_ellipses(system, of)) {
-    refuse(system, of, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
+    refuse(system, of, reach_of_parts(system, of), 0.5 * std::min(way.radius_i, way.radius_j), happening);
   }
+  if (system.shapes.parts.empty()) return;
+  const Vec2 before = system.branch(of);
+  const PeriodicImage image = of.image();
+  const Vec2 after =
+      system.bodies.next[of.j].position + system.cell.next.shift(image) - system.bodies.next[of.i].position;
+  check_turns(system, of, std::min(norm(before), norm(after)));
 }
 
 }  // namespace
@@ -166,6 +212,10 @@ void refuse_long_ways_in_cell(const GrainSystem& system, double reach) {
 }
 
 bool may_cross(const GrainSystem& system, double reach) {
+  const auto turns_far = [&](std::int32_t body) {
+    return std::abs(system.dt() * system.bodies.motions[body].spin) > quarter_turn;
+  };
+  if (std::ranges::any_of(system.shapes.shaped, turns_far)) return true;
   // two bodies come nearer by twice the reach at most
   return !(reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius);
 }
