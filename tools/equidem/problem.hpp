@@ -120,7 +120,7 @@ struct SolvedCase {
   double moment_per_area = 0;
   std::optional<TensionResult> tension = {};
 };
-/// "solved"; "unstable" where the assembly would give way; "unjudged" where the solver cannot tell.
+/// "solved"; "unstable" where the assembly is; "unjudged" where the solver cannot tell.
 const char* status_of(std::optional<std::int64_t> unstable_modes);
 
 SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const NamedLoads& loads);

@@ -77,7 +77,7 @@ struct EnumNames<CholmodOrdering> {
     const char* name;
     const char* help;
     const char* in_reports;
-    double memory_factor;  ///< estimated peak memory over that in our order (data/benchmarks/static.md)
+    double memory_factor;  ///< estimated peak memory over that in our order (data/benchmarks/statics.md)
   };
   static constexpr const char* what = "ordering";
   static constexpr Entry list[] = {

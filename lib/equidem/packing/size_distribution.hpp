@@ -26,7 +26,7 @@ struct Sieve {
 struct SizeDistribution {
   enum class Kind {
     uniform,      ///< radii uniform in [smallest, largest]
-    log_normal,   ///< ln(r/median) is normal with the standard deviation `deviation`, cut at three of them
+    log_normal,   ///< ln(r/median) is normal with the standard deviation `deviation`, truncated at three times it
     sieve_curve,  ///< mass between two sieves is spread uniformly over the logarithm of the diameter
   } kind = Kind::uniform;
   double smallest = 0, largest = 0;  ///< uniform: m; equal ones are allowed

@@ -77,12 +77,12 @@ CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprin
     return {.sought = false,
             .searched =
                 "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
-                "single kT/kN tells what gives way"};
+                "single kT/kN is critical"};
   if (springs.bends())
     return {.sought = false,
             .searched =
-                "bending springs resist rotations too, so that no single kT/kN tells what gives way; with kT of 0 "
-                "or more and kM of 0 or more nothing does"};
+                "bending springs resist rotations too, so that no single kT/kN is critical; with kT of 0 or "
+                "more and kM of 0 or more the assembly is stable"};
   if (survey) return critical_of_survey(*survey);
   if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);
   const CriticalRatio found = find_critical_ratio(assembly, springs, supports, {.rotation = rotation});

@@ -432,7 +432,7 @@ void add_method(Results& out, const Calibration& found) {
         "It is that of the infinite lattice: a block with free edges is softer near them, and its own stiffness is "
         "what equidem homogenize says");
     if (found.springs.kT < 0)
-      out.warning("", "WARNING: with free edges it gives way already at kT/kN near -0.26; see equidem stability");
+      out.warning("", "WARNING: with free edges it is unstable already at kT/kN near -0.26; see equidem stability");
     return;
   }
   const std::string boundary = to_string(found.achieved.boundary);

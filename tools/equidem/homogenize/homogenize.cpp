@@ -233,7 +233,7 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
   }
   const std::size_t unstable = r.unstable_modes > 0 ? lines.size() : SIZE_MAX;
   if (r.unstable_modes > 0) {
-    lines.push_back(fmt::format("UNSTABLE: {} by which the network would give way; this stiffness is no state of rest",
+    lines.push_back(fmt::format("UNSTABLE: the network loses stability by {}; this stiffness is of no state of rest",
                                 counted(*r.unstable_modes, "mode")));
     if (r.unstable_strains > 0) {
       lines.push_back(fmt::format("{} of the stiffness {} negative: such a mean strain gives energy back",

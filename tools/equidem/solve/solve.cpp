@@ -25,7 +25,7 @@ std::string stability(const Problem& problem, const Equilibrium& result) {
   if (!result.unstable_modes) return stability_not_known;
   if (result.unstable_modes > 0)
     return fmt::format(
-        "UNSTABLE: {} beyond one for each rotation; the assembly would give way by so many modes, this "
+        "UNSTABLE: {} beyond one for each rotation; the assembly is unstable in so many modes, this "
         "equilibrium is no state of rest",
         counted(*result.unstable_modes, "negative pivot"));
   if (!result.negative_pivots) return "stable: no spring is negative";

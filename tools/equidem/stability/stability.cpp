@@ -82,12 +82,12 @@ void add_inertia(Results& out, const Stability& s) {
   const InertiaReport& inertia = s.inertia;
   out.line("inertia").add("negative_pivots", "", inertia.negative_pivots, "negative pivot", {Shown::count});
   if (s.critical_load && inertia.negative_pivots > 0 && inertia.negative_pivots == inertia.unstable_modes) {
-    out.note(fmt::format(": under its forces at rest the assembly gives way by {}",
+    out.note(fmt::format(": under its forces at rest the assembly is unstable in {}",
                          counted(*inertia.unstable_modes, "mode")));
   } else if (inertia.negative_pivots > 0) {
     out.note(inertia.unstable_modes == 0 ? ", one for each rotation: no translation has lost its stiffness"
              : inertia.unstable_modes > 0
-                 ? fmt::format(", {} beyond one for each rotation: the assembly gives way by so many modes",
+                 ? fmt::format(", {} beyond one for each rotation: the assembly is unstable in so many modes",
                                *inertia.unstable_modes)
                  : "; the rotations alone are singular, so that they cannot be told apart");
   }
@@ -109,7 +109,7 @@ void add_critical_load(Results& out, const CriticalLoad& load, const Assembly& a
   out.add("critical_load/factor", "", load.factor, "times the forces at rest", {.digits = 10});
   out.add("critical_load/width", "proven to", load.width, "of it", {Shown::power, 0});
   if (!load.motion.empty())
-    out.line("", "gives way by ").add("critical_load/motion", "", describe_motion(assembly, load.motion));
+    out.line("", "loses stability by ").add("critical_load/motion", "", describe_motion(assembly, load.motion));
 }
 
 void add_critical(Results& out, const Stability& s) {
@@ -137,7 +137,7 @@ void add_critical(Results& out, const Stability& s) {
   } else {
     out.set("critical_ratio", nullptr).line("critical kT/kN", "none: stable in statics down to kT = -kN");
   }
-  if (!c.motion.empty()) out.line("", "gives way by ").add("critical_motion", "", c.motion);
+  if (!c.motion.empty()) out.line("", "loses stability by ").add("critical_motion", "", c.motion);
   out.line("", "searched: " + c.searched);
   if (!s.ratio) {
     out.line("", "contacts of this case have different kT/kN: the critical ratio is that of equal ones");

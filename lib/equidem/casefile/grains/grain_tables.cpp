@@ -80,7 +80,7 @@ std::vector<Key<PairOptions>> contact_keys() {
   return {
       rebound_key<Restitution>(
           "restitution", from(0, 1), not_beside({"damping"}, "each says how strong the dashpot is"),
-          "speed after over speed before, of two bodies that meet head-on without gravity; give it or damping"),
+          "speed after over speed before, of two bodies that collide head-on without gravity; give it or damping"),
       rebound_key<DashpotDamping>("damping", range({.low = 0, .high = 10, .low_open = true}),
                                   "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc; of "
                                   "laws with linear springs and dashpots"),
@@ -95,7 +95,7 @@ std::vector<Key<PairOptions>> contact_keys() {
       stiffness_key<ContactDuration>("contact_duration", unit("s"),
                                      "until the overlap is zero again, the same for all masses; of linear springs"),
       stiffness_key<LargestOverlap>("largest_overlap", unit("m"),
-                                    "not exceeded by two bodies that meet at closing_speed"),
+                                    "not exceeded by two bodies that collide at closing_speed"),
       key("closing_speed", &P::closing_speed, optional, unit("m/s"), positive,
           "speed of the fastest impact expected; for largest_overlap, and for an automatic step with springs that are "
           "not linear"),
@@ -142,7 +142,7 @@ void bind_collisions(File<GrainTables>& file) {
   using C = CollisionTable;
   const std::string both = "both make the stiffness of a contact";
   const auto nonlinear = laws_with([](const LawDescription& law) { return !is_linear(law); });
-  file.table("collisions", required, "how bodies meet, rebound and part")
+  file.table("collisions", required, "how bodies collide, rebound and separate")
       .keys({key_in<T>("law", &GrainCase::options, &GrainOptions::law, refused(letters_of_laws()), help_of_laws())});
   file.table("collisions", &T::collisions)
       .keys({key("young_modulus", &C::young_modulus, unit("Pa"), positive, only_with({"poisson_ratio"}, both),

@@ -74,7 +74,7 @@ std::vector<Key<BodyRenamingTable>> renaming_keys() {
   keys.push_back(key("wall", &R::wall, not_beside({"group"}, one), not_beside({"box"}, one),
                      "instead of bodies: this wall, before [[stage.wall]] of the stage is read"));
   keys.push_back(key("to", &R::to, required,
-                     "their group from now on, a new one or one that there is, or the new name of the wall: contacts, "
+                     "their group from now on, a new or an existing one, or the new name of the wall: contacts, "
                      "and histories of walls, go by it"));
   return keys;
 }
@@ -569,7 +569,7 @@ void bind_stages(File<GrainTables>& file) {
   file.table("stage.until", "what ends the stage; all that is given must hold").described(until_keys());
   file.table("stage.collisions", like("collisions"), "contacts from now on, where they differ from [collisions]")
       .described(changed_contact_keys());
-  file.table("stage.bonds", like("bonds"), "bonds that are made where the stage begins, beside those that there are")
+  file.table("stage.bonds", like("bonds"), "bonds that are made where the stage begins, beside the existing ones")
       .described(stage_bond_keys());
   file.table("stage.shaking", like("shaking"), "the box shakes in this stage; times count from its start")
       .described(shaking_keys());
@@ -587,7 +587,7 @@ void bind_stages(File<GrainTables>& file) {
              "contacts of two groups, or of a group and a wall, from now on")
       .described(pair_keys());
   file.table("stage.wall", repeated_table, like("wall"),
-             "a wall that is there, which stands without a motion of its own in the stage, goes or moves; or a new one")
+             "an existing wall, which stands without a motion of its own in the stage, goes or moves; or a new one")
       .described(stage_wall_keys());
   file.table("stage.wall.servo", like("wall.servo"), "its schedule begins with the stage").described(servo_keys());
 }

@@ -59,7 +59,7 @@ std::vector<Key<PackingTables>> packing_radii_keys() {
           key("largest", &T::sizes, &D::largest, required, unit("m"), positive, uniform, "radii between the two"),
           key("median", &T::sizes, &D::median, required, unit("m"), positive, log_normal),
           key("deviation", &T::sizes, &D::deviation, required, from(0, 2), log_normal,
-              "standard deviation of ln r; cut at three of them"),
+              "standard deviation of ln r; truncated at three standard deviations"),
           key("path", &T::sieve_curve, required, when("distribution", {"sieve_curve"}),
               "a CSV file: diameter in m, share of the mass that passes")};
 }

@@ -182,7 +182,7 @@ void refuse_crept_bonds(const GrainSystem& system) {
     if (is_wide(system, bond)) continue;
     computation_failed(fmt::format("step {}: the centres of the bonded grains {} and {} have crept together",
                                    system.step, system.bodies.grain_of[bond.i], system.bodies.grain_of[bond.j]),
-                       "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
+                       "dashpots alone creep under a steady force, N/C_n, and bonded discs do not collide",
                        "Use larger dashpots, give normal_spring, or tie the discs as a clump");
   }
 }
