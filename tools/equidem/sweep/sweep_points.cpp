@@ -143,7 +143,7 @@ std::string toml_of(const TomlValue& value) {
   return value.type == TomlValue::Type::boolean ? (value.boolean ? "true" : "false") : toml_text(value.text);
 }
 
-constexpr std::string_view springs_table = "springs.";
+constexpr std::string_view prefix_of_springs = "springs.";
 
 /// [springs] of a point, whatever file they were read from: with the values of its keys, and kT by the ratio to kN.
 std::string springs_of_ratio(const SweepPlan& plan, const std::vector<std::string>& values, const TomlValue& base) {
@@ -153,7 +153,7 @@ std::string springs_of_ratio(const SweepPlan& plan, const std::vector<std::strin
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     const std::string& name = plan.keys[k].name;
     if (name == "ratio") ratio = *number_from<double>(values[k]);
-    if (name.starts_with(springs_table)) entries[name.substr(springs_table.size())] = toml_of(values[k]);
+    if (name.starts_with(prefix_of_springs)) entries[name.substr(prefix_of_springs.size())] = toml_of(values[k]);
   }
   if (const auto kN = number_from<double>(entries["kN"])) entries["kT"] = toml_number(ratio * *kN);
   return fmt::format("springs={{{}}}", joined(entries, [](const auto& entry) {
@@ -219,7 +219,7 @@ std::vector<std::string> options_of(const SweepPlan& plan, const std::vector<std
   if (by_ratio) options = {"--set", springs_of_ratio(plan, values, base)};
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     const std::string& name = plan.keys[k].name;
-    if (name == "ratio" || (by_ratio && name.starts_with(springs_table))) continue;
+    if (name == "ratio" || (by_ratio && name.starts_with(prefix_of_springs))) continue;
     if (name == SweepPlan::seed) {
       options.insert(options.end(), {"--seed", values[k]});
     } else {
