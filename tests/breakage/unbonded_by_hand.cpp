@@ -113,6 +113,28 @@ TEST_CASE("a_bond_that_breaks_in_shear_goes_on_with_friction") {
   CHECK(disc.run().energy_error() < 1e-12);
 }
 
+TEST_CASE("a_bond_without_tension_strength_breaks_at_the_start_and_the_path_goes_on") {
+  // between two held discs the middle one goes by lambda against the right one alone
+  Assembly chain = chain_of_discs(3, 1);
+  chain.groups["middle"] = {{1}, {}};
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"middle", {}, 0, 0}, {"last", 0, 0, 0}};
+  options.loads = {{"middle", LoadKind::per_disc, {1, 0}, 0}};
+  options.control = LoadControl::load;
+  options.legs = {10};
+  ContactStrengths strengths = equal_strengths(chain, 1e3, 1e3);
+  strengths.tension[0] = 0;
+  Unbonded disc(chain, stiff_and_soft, strengths, options, {0.3, {}});
+  disc.all();
+  CAPTURE(disc.run().why(), modes_of(disc));
+  CHECK(modes_of(disc) == std::vector<std::string>{"tension"});
+  CHECK(disc.event(0).lambda == 0);
+  CHECK(disc.event(0).contact == 0);
+  CHECK(disc.run().end() == PathEnd::legs_done);
+  CHECK(disc.run().leg_points().back().load == Approx(10).epsilon(1e-12));
+  CHECK(disc.run().leg_points().back().motion == Approx(10 / normal_spring).epsilon(1e-12));
+}
+
 TEST_CASE("a_gap_closes_where_the_disc_has_crossed_it") {
   // The middle of three discs hangs on a bond and meets the other one behind a gap: from there on both resist.
   const double gap = 2e-3;

@@ -244,3 +244,10 @@ TEST_CASE("a_packing_that_no_assembly_names_is_refused_by_name") {
                  "\"strain\"}"})
             .find("bodies fall, and the case gives no springs") != std::string::npos);
 }
+
+TEST_CASE("a_clump_with_a_disc_within_another_is_refused_at_its_key") {
+  const test::Refusal refusal = test::check_refused(
+      [] { parsed_packing({"packing.shape={kind = \"clump\", discs = [[0.0, 0.0, 1.0], [0.1, 0.0, 0.1]]}"}); },
+      {"disc 1 of a clump lies within disc 0"}, ErrorKind::bad_input);
+  CHECK_THAT(refusal.where, Catch::Contains("packing.shape.discs"));
+}

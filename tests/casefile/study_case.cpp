@@ -75,7 +75,8 @@ TEST_CASE("study_files_that_cannot_be_carried_out_are_refused") {
   refused(head + "truth = \"richardson\"\n" + rows, "the order is missing");
   refused(head + "truth = \"known\"\n" + rows, "value");
   refused(head + "truth = \"known\"\nvalue = 0\n" + rows, "errors are relative to 0");
-  refused(head + rows + rows, "2 keys refine");
+  refused(head + rows + rows, "assembly.rows is varied twice");
+  refused(head + rows + "[[vary]]\nkey = \"springs.kT\"\nvalues = [1.0, 2.0]\n", "2 keys refine");
   refused(head + "[[vary]]\nkey = \"assembly.rows\"\nvalues = [3, 3]\n", "a value is given twice");
   refused(head + "[[vary]]\nkey = \"assembly.rows\"\nvalues = [0, 3]\n", "0 is among values that refine");
   const std::string methods = head + "[[vary]]\nkey = \"run.integrator\"\n";

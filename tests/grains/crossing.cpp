@@ -2,6 +2,7 @@
 /// \file
 /// A step that would let bodies pass through one another is refused before it happens.
 #include <cstdlib>
+#include <numbers>
 
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
@@ -66,6 +67,40 @@ TEST_CASE("what_would_pass_unseen_is_refused_with_the_step_that_would_do") {
     CHECK(step > 0.01);
     CHECK(step < 1);
   }
+}
+
+TEST_CASE("a_body_that_would_turn_past_a_wall_or_a_body_within_a_step_is_refused_one_apart_is_not") {
+  const Stepping stepping = GENERATE(Stepping{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
+                                     Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet});
+  const bool on_wall = GENERATE(false, true), clump = GENERATE(false, true), near = GENERATE(false, true);
+  // a whole turn a step, with the long axis along the surface at both ends of it
+  const double step = 1e-3, distance = near ? 1.2 : 2.5;
+  Grain body = ball({0, distance}, 1, {}, 1, 0.5);
+  body.spin = 2 * std::numbers::pi / step;
+  GrainScene scene = scene_of({body}, {}, {.stiffness = 1, .restitution = 1});
+  if (clump) {
+    scene.clumps = {{{{{-1, 0}, 1}, {{1, 0}, 1}}}};
+    scene.grains[0].clump = 0;
+    scene.grains[0].radius = 2;
+  } else {
+    scene.grains[0].radius = 2;
+    scene.grains[0].short_half_axis = 1;
+  }
+  if (on_wall) {
+    scene.walls = {line("floor", {0, 0}, {0, 1})};
+  } else {
+    scene.grains.push_back(ball({0, -1}, 1));
+  }
+  GrainSimulation simulation(scene, options_of(stepping, step));
+  CAPTURE(stepping.name(), on_wall, clump, near);
+  if (!near) {
+    simulation.advance(3);
+    CHECK(simulation.grains()[0].angle == Approx(3 * 2 * std::numbers::pi));
+    return;
+  }
+  const Refusal refusal = check_refused([&] { simulation.advance(1); }, {"grain 0 would turn past", "6.283 rad"},
+                                        ErrorKind::computation_failed);
+  CHECK(step_that_would_do(refusal) == Approx(step * 0.1 / (2 * std::numbers::pi)).epsilon(0.01));
 }
 
 TEST_CASE("exact_flow_sees_what_happens_within_a_step_or_refuses_it") {

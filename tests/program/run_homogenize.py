@@ -26,6 +26,18 @@ kT = {kT}
 
 
 class HomogenizeTest(ProgramTest):
+    def test_a_loose_disc_that_widens_the_region_of_a_sample_is_named(self):
+        discs = [((i + 0.5 * (row % 2)) * 0.01, row * 0.005 * 3**0.5) for row in range(8) for i in range(8)]
+        case = self.folder / "case.toml"
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "discs.csv"\ngap_tolerance = 1e-6\n'
+                        "[springs]\nkN = 1e9\nkT = 5e8\n")
+        for loose, warned in (((0.12, 0.04), True), (None, False)):
+            (self.folder / "discs.csv").write_text("x_m,y_m,radius_m\n" + "".join(
+                f"{x},{y},0.005\n" for x, y in [*discs, *([loose] if loose else [])]))
+            done = self.check_done(equidem("homogenize", case))
+            for words in ("1 disc without contacts, the first disc 64 at (0.12, 0.04) m, makes the region", "Remove it"):
+                self.assertEqual(words in " ".join(done.stdout.split()), warned, done.stdout)
+
     def homogenize(self, case, *options):
         return parse_json(self.check_done(equidem("homogenize", case, "--json", "-", *options)).stdout)
 

@@ -97,6 +97,17 @@ class Study(ProgramTest):
         self.check_error(equidem("study", STUDIES / "random_cells.toml", *SHORT, "--out", out), 2, "another study", "--overwrite")
         self.check_error(equidem(*command, "--seed", 2), 2, "another study")
 
+    def test_another_case_of_the_same_settings_is_another_study(self):
+        study, case, out = self.folder / "study.toml", self.folder / "cell.toml", self.folder / "out"
+        case.write_text((CASES / "hexagonal_cell.toml").read_text())
+        study.write_text('schema = "equidem/1"\n[study]\nverb = "homogenize"\ncase = "cell.toml"\nmeasure = "shear_modulus"\n'
+                         'truth = "known"\nvalue = 1e8\n[[vary]]\nkey = "assembly.rows"\nvalues = [2, 4]\n')
+        command = ("study", study, *SHORT, "--quiet", "--out", out)
+        self.check_done(equidem(*command))
+        self.check_done(equidem(*command))
+        case.write_text(case.read_text().replace("kT = 0.5e9", "kT = 0.25e9"))
+        self.check_error(equidem(*command), 2, "another study", "--overwrite")
+
     def test_interrupted_it_keeps_what_it_has(self):
         out = self.folder / "out"
         command = [PROGRAM, "study", STUDY, "--rounds", "100", "--out", str(out), "--budget", "600", "--quiet"]

@@ -11,6 +11,7 @@ import unittest
 from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
 
 ROCK = ("packing.grains=80", "packing.solid_fraction=0.8")
+NO_PICTURE = ("--set", "output.files=[]")
 MACHINE = ("report", "times", "version", "units", "labels")  # keys of results that are no numbers of the computation
 
 
@@ -230,6 +231,35 @@ class Sweep(ProgramTest):
         self.check_error(equidem(*sweep, "--key", "ratio", *many, "--key", "springs.kN", *many), 2, "1e+08 points", "GB",
                          "hours", "1 000 000")
         self.check_error(equidem("sweep", CASES / "calibrate_random.toml", "--key", "ratio", "--values", "0"), 2, "needs springs")
+
+    def test_the_ratio_of_a_point_is_that_to_its_own_kN(self):
+        keys = (("--key", "springs.kN", "--values", "1e9,3e9"), ("--key", "ratio", "--values", "0,0.5"))
+        for first, second in (keys, keys[::-1]):
+            result = self.sweep(CASES / "hexagonal_cell.toml", "--verb", "homogenize", *first, *second)
+            for point in result["points"]:
+                G = 3**0.5 / 4 * point["springs.kN"] * (1 + point["ratio"])
+                self.assertLess(abs(point["shear_modulus"] / G - 1), 1e-12, point)
+        two = ("--key", "ratio", "--values", "0.5", "--key", "springs.kT", "--values", "2e7")
+        self.check_error(equidem("sweep", TENSION, *two), 2, "ratio and springs.kT", "both set springs.kT")
+        seeds = ("--seeds", "1,2", "--key", "assembly.seed", "--values", "5")
+        self.check_error(equidem("sweep", CASES / "random_cell.toml", "--verb", "homogenize", *seeds), 2, "--seeds",
+                         "both set assembly.seed")
+
+    def test_a_file_that_has_changed_is_no_reason_to_go_on(self):
+        discs = [((i + 0.5 * (row % 2)) * 0.02, row * 0.01 * 3**0.5) for row in range(6) for i in range(6)]
+        table, case, out = self.folder / "discs.csv", self.folder / "case.toml", self.folder / "out"
+        write = lambda some: table.write_text("x_m,y_m,radius_m\n" + "".join(f"{x},{y},0.01\n" for x, y in some))
+        case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "discs.csv"\ngap_tolerance = 1e-6\n'
+                        '[springs]\nkN = 1e9\nkT = 5e8\n[strength]\ntension = 1e5\nshear = 1e5\n'
+                        '[strain]\nyy = 1e-3\n[quasistatic]\nmax_events = 1\n')
+        for verb, more in (("sweep", ("--verb", "homogenize", "--key", "effects.rotation", "--values", "free,restrained")),
+                           ("quasistatic", NO_PICTURE)):
+            write(discs)
+            command = (verb, case, *more, "--out", out / verb)
+            self.check_done(equidem(*command))
+            self.check_done(equidem(*command, "--resume"))
+            write(discs[:-1])
+            self.check_error(equidem(*command, "--resume"), 2, "of another case", "a file that")
 
     def test_the_curve_follows_theory(self):
         out = self.folder / "out"

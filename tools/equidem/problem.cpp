@@ -143,6 +143,37 @@ std::string tables_of_assembly(const Case& resolved) {
   return to_toml(std::move(document), {});
 }
 
+/// A free sample has the least rectangle that holds all discs as its region. A warning where discs that touch nothing
+/// make it wider; empty: they do not.
+std::string warning_of_wide_region(const Assembly& assembly) {
+  constexpr double noticeable = 1e-6;
+  if (assembly.periodic() || assembly.kind != "file" || assembly.cell_areas.empty()) return {};
+  std::vector<char> touches(assembly.size(), 0);
+  for (const Contact& contact : assembly.contacts) touches[contact.i] = touches[contact.j] = 1;
+  std::vector<Vec2> centres;
+  std::vector<double> radii;
+  std::vector<std::size_t> loose;
+  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+    if (touches[disc] == 0) {
+      loose.push_back(disc);
+      continue;
+    }
+    centres.push_back(assembly.centres[disc]);
+    radii.push_back(assembly.radii[disc]);
+  }
+  if (loose.empty() || centres.size() < 2) return {};
+  const double region = least_rectangle(assembly.centres, assembly.radii).area();
+  const double share = region / least_rectangle(centres, radii).area() - 1;
+  const bool is_given = std::abs(assembly.area() / region - 1) > noticeable;
+  if (is_given || !(share > noticeable)) return {};
+  const Vec2 x = assembly.centres[loose.front()];
+  return fmt::format(
+      "{} without contacts, the first disc {} at ({:.6g}, {:.6g}) m, {} the region of the sample {} larger: stresses, "
+      "moduli and solid fraction are means over it. Remove {}, or give the file a box.",
+      counted(std::ssize(loose), "disc"), loose.front(), x.x, x.y, loose.size() == 1 ? "makes" : "make", percent(share),
+      loose.size() == 1 ? "it" : "them");
+}
+
 std::atomic<SharedAssemblies*> shared_assemblies{nullptr};
 
 }  // namespace
@@ -200,7 +231,10 @@ Problem problem_of(Case resolved, Purpose purpose) {
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
   stop_if_interrupted();
-  return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
+  std::string wide_region = warning_of_wide_region(assembly);
+  Problem problem{std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
+  problem.wide_region = std::move(wide_region);
+  return problem;
 }
 
 bool acts(const Case& resolved) {
@@ -345,6 +379,7 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
   results.append(of_whole);
   add_gaps(results, a.gaps, a.contacts_found);
   add_left_out(results, problem.left_out);
+  if (!problem.wide_region.empty()) results.warning("warning", problem.wide_region);
   const bool notched = !problem.resolved.notches.empty(), dead = !problem.resolved.dead_loads.empty();
   if ((notched || dead) && !problem.breaks) {
     results.line("not used", fmt::format("{}{}{}: quasistatic alone takes them", notched ? "[[notch]]" : "",

@@ -43,6 +43,7 @@ struct Problem {
   LeftOut left_out = {};
   std::optional<PrestressedSprings> prestress = {};  ///< what prestressed() decided
   bool breaks = false;                               ///< contacts break: notches and dead loads are used
+  std::string wide_region = {};                      ///< a warning; empty: discs without contacts do not widen it
 
   /// Networks of chance may have mechanisms that no load moves; of lattices and triangulations one is a mistake.
   [[nodiscard]] EquilibriumOptions options() const {

@@ -132,8 +132,8 @@ void check_turns(const GrainSystem& system, const Partners& of, double apart) {
   if (apart > extent(of.i, of.part_i) + (of.j < 0 ? 0 : extent(of.j, of.part_j))) return;
   computation_failed(fmt::format("step {}: grain {} would turn past {}", system.step, system.bodies.grain_of[of.i],
                                  name_of_other(system, of)),
-                     fmt::format("one of the two turns by {:.4g} rad in a step of {:.4g} s, and touches in between",
-                                 turn, system.dt()),
+                     fmt::format("{} by {:.4g} rad in a step of {:.4g} s: contacts begin and end within it",
+                                 of.j < 0 ? "it turns" : "one of the two turns", turn, system.dt()),
                      fmt::format("Use a step below {:.3g} s", small_turn / turn * system.dt()));
 }
 
