@@ -251,7 +251,8 @@ class Sweep(ProgramTest):
         write = lambda some: table.write_text("x_m,y_m,radius_m\n" + "".join(f"{x},{y},0.01\n" for x, y in some))
         case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "discs.csv"\ngap_tolerance = 1e-6\n'
                         '[springs]\nkN = 1e9\nkT = 5e8\n[strength]\ntension = 1e5\nshear = 1e5\n'
-                        '[strain]\nyy = 1e-3\n[quasistatic]\nmax_events = 1\n')
+                        '[[support]]\ngroup = "bottom"\nux = true\nuy = true\n[[load]]\ngroup = "top"\nforce = [0.0, 1.0]\n'
+                        '[quasistatic]\nmax_events = 1\n')
         for verb, more in (("sweep", ("--verb", "homogenize", "--key", "effects.rotation", "--values", "free,restrained")),
                            ("quasistatic", NO_PICTURE)):
             write(discs)

@@ -128,19 +128,6 @@ std::vector<Key<Probe>> probe_keys(CaseKind kind) {
           "for a stress, its region")};
 }
 
-namespace {
-
-/// Whether a text of the document, the names of schedules aside, is the given one.
-bool names_it(const TomlValue& value, const std::string& text) {
-  const auto below = [&](const TomlEntry& entry) {
-    return entry.value.path != "schedule" && names_it(entry.value, text);
-  };
-  return value.text == text || std::ranges::any_of(value.entries, below) ||
-         std::ranges::any_of(value.items, [&](const TomlValue& item) { return names_it(item, text); });
-}
-
-}  // namespace
-
 std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vector<ScheduleTable>& tables) {
   using Kind = Schedule::Kind;
   check_names(root, "schedule");
@@ -148,9 +135,6 @@ std::vector<NamedSchedule> read_schedules(const TomlValue& root, const std::vect
   for (std::size_t k = 0; k < tables.size(); ++k) {
     const TomlValue& table = repeated(root, "schedule")[k];
     const ScheduleTable& read = tables[k];
-    if (!names_it(root, read.name))
-      fail_at(*table.find("name"), fmt::format("the schedule \"{}\" moves nothing", read.name),
-              "no table of the case names it", "Name it as schedule = ..., or remove it");
     Schedule& schedule = schedules.emplace_back(NamedSchedule{read.name, read.schedule}).schedule;
     const bool points = schedule.kind == Kind::table;
     if (points) schedule.value = 0;

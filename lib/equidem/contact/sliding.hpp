@@ -66,8 +66,8 @@ struct CoulombSpring {
   /// \tparam equal all contacts have a spring
   /// \param dashpot c dt, kg
   /// \param stretch at the start of the step
-  /// \param velocity slip at the instant; midpoint rule: mean over the step as all other forces make it, of constant ones
-  ///        that at the start plus half its change
+  /// \param velocity slip at the instant; midpoint rule: mean over the step as all other forces make it, of constant
+  ///        ones that at the start plus half its change
   /// \param mean_slip Verlet schemes: mean velocity over the drift before, in which the normal turns; it stretches the
   ///        spring, whose energy would else differ from the work on it by the first order of the step
   /// \param mobility midpoint rule: mean velocity per impulse, half the inverse of the tangential mass, 1/kg

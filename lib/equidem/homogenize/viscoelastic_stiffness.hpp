@@ -53,9 +53,9 @@ SolveEstimate estimate_viscoelastic(const Assembly& assembly, const ContactSprin
 /// \param springs elastic; those of each contact times the factors of `viscoelasticity` are its complex springs
 /// \param frequencies Hz, > 0
 /// \param options boundary periodic or displacement
-/// \throws Error as effective_stiffness; (bad_input) on negative springs, whose motions would grow, on forces at rest of
-///         springs that do not keep them, on tractions at the boundary, frequencies that are not positive or outside a
-///         table; (computation_failed) where the springs of a frequency are too far apart or forces at rest buckle;
+/// \throws Error as effective_stiffness; (bad_input) on negative springs, whose motions would grow, on forces at rest
+///         of springs that do not keep them, on tractions at the boundary, frequencies that are not positive or outside
+///         a table; (computation_failed) where the springs of a frequency are too far apart or forces at rest buckle;
 ///         ErrorWith<ViscoelasticStiffness> behind the first frequency
 ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const ContactSprings& springs,
                                              const Viscoelasticity& viscoelasticity,

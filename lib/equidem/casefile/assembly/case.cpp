@@ -78,8 +78,7 @@ std::vector<Key<ViscoelasticCase>> viscoelastic_keys() {
           fmt::format("a CSV file with the columns {}, Hz and Pa, of a contact with the kN and kT of the case; others "
                       "are scaled as their elastic springs are",
                       table_header)),
-      key("frequencies", &V::frequencies, unit("Hz"),
-          not_beside({"lowest", "per_decade"}, "each says which frequencies to take"),
+      key("frequencies", &V::frequencies, unit("Hz"), not_beside({"lowest"}, "each says which frequencies to take"),
           "of complex moduli; left out: 3 decades either side of 1/(2 pi tau), or those of the table"),
       key("lowest", &V::lowest, unit("Hz"), positive, only_with({"highest"}, "a range has two ends"),
           range_of_frequencies),
@@ -384,7 +383,6 @@ std::vector<Key<OutputCase>> output_keys() {
       key("frame_interval", &OutputCase::frame_interval, of_runs, unit("s"), positive, interval),
       key("probe_interval", &OutputCase::probe_interval, of_runs, unit("s"), positive, interval),
       key("frame_contacts", &OutputCase::frame_contacts, of_runs,
-          only_with({"frame_interval"}, "frames are written at that interval"),
           "contacts with their forces in every frame: some 50 bytes a body and 84 a contact, beside 100 a disc"),
       key("checkpoint_interval", &OutputCase::checkpoint_interval, of_runs, unit("s"), positive,
           "wall-clock time from one checkpoint of a run, or of the events of quasistatic, to the next")};

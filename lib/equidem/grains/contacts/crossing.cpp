@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -123,18 +124,21 @@ std::string name_of_other(const GrainSystem& system, const Partners& of) {
 /// Refuses turns in which a part that is near another one, or a wall, would touch and leave it unseen.
 /// \param apart distance of the centres of the bodies, or of the centre and the wall, at either end of the step, m
 void check_turns(const GrainSystem& system, const Partners& of, double apart) {
-  const double turn = std::max(turn_of(system, of.i, of.part_i), of.j < 0 ? 0 : turn_of(system, of.j, of.part_j));
+  const double of_i = turn_of(system, of.i, of.part_i), of_j = of.j < 0 ? 0 : turn_of(system, of.j, of.part_j);
+  const double turn = std::max(of_i, of_j);
   if (!(turn > quarter_turn)) return;
   const auto extent = [&](std::int32_t body, std::int32_t part_index) {
     const GrainPart part = system.part(body, part_index);
     return norm(part.offset) + part.a;
   };
   if (apart > extent(of.i, of.part_i) + (of.j < 0 ? 0 : extent(of.j, of.part_j))) return;
-  computation_failed(fmt::format("step {}: grain {} would turn past {}", system.step, system.bodies.grain_of[of.i],
-                                 name_of_other(system, of)),
-                     fmt::format("{} by {:.4g} rad in a step of {:.4g} s: contacts begin and end within it",
-                                 of.j < 0 ? "it turns" : "one of the two turns", turn, system.dt()),
-                     fmt::format("Use a step below {:.3g} s", small_turn / turn * system.dt()));
+  Partners turning = of;
+  if (of_j > of_i) std::swap(turning.i, turning.j);
+  computation_failed(
+      fmt::format("step {}: grain {} would turn past {}", system.step, system.bodies.grain_of[turning.i],
+                  name_of_other(system, turning)),
+      fmt::format("it turns by {:.4g} rad in a step of {:.4g} s: contacts begin and end within it", turn, system.dt()),
+      fmt::format("Use a step below {:.3g} s", small_turn / turn * system.dt()));
 }
 
 void check_discs(const GrainSystem& system, const Partners& of, const PartWay& parts) {
@@ -178,18 +182,18 @@ void check_wall(const GrainSystem& system, const Partners& of) {
 }
 
 void check_parts(const GrainSystem& system, const Partners& of) {
+  if (!system.shapes.parts.empty()) {
+    const Vec2 before = system.branch(of);
+    const Vec2 after =
+        system.bodies.next[of.j].position + system.cell.next.shift(of.image()) - system.bodies.next[of.i].position;
+    check_turns(system, of, std::min(norm(before), norm(after)));
+  }
   const PartWay way = way_of_parts(system, of);
   if (!has_ellipse(system, of)) {
     check_discs(system, of, way);
   } else if (const char* happening = crossing_of_ellipses(system, of)) {
     refuse(system, of, reach_of_parts(system, of), 0.5 * std::min(way.radius_i, way.radius_j), happening);
   }
-  if (system.shapes.parts.empty()) return;
-  const Vec2 before = system.branch(of);
-  const PeriodicImage image = of.image();
-  const Vec2 after =
-      system.bodies.next[of.j].position + system.cell.next.shift(image) - system.bodies.next[of.i].position;
-  check_turns(system, of, std::min(norm(before), norm(after)));
 }
 
 }  // namespace
