@@ -396,6 +396,8 @@ legs = [1.0]
         self.check_error(equidem("calibrate", STRENGTH, *notched, "--set", "strength_target.notches=[0.2]"), 2,
                          "strength_target: a notch of 0.2 m in a sample", "Give shorter notches")
         self.check_error(equidem("calibrate", STRENGTH, *notched), 2, "strength_target: a toughness needs notches")
+        for more in ((), ("--dry-run",)):
+            self.check_error(equidem("calibrate", STRENGTH, "--set", "springs.bond_width=0.5", *more), 2, "bending springs")
         result = self.calibrated(STRENGTH, "--dry-run")
         self.assertGreater(result["peak_bytes"], 0)
 

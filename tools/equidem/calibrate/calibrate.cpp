@@ -283,9 +283,9 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   const auto lock = lock_out(options);
   Problem& problem = problem_found->emplace(problem_of(std::move(read)));
   const Case& resolved = problem.resolved;
+  casefile::with_place(resolved.where("springs"), [&] { check_breaking_springs(problem.springs.springs); });
   if (options.dry_run) return dry_run_strengths(options, problem);
 
-  casefile::with_place(resolved.where("springs"), [&] { check_breaking_springs(problem.springs.springs); });
   const std::string place = resolved.where("strength_target");
   Stopwatch watch;
   const std::vector<SeededSample> samples = casefile::with_place(place, [&] { return build_samples(problem); });
