@@ -348,7 +348,8 @@ std::string deciding_text(const Sweep& sweep) {
   const auto folder = sweep.options.common.case_file.parent_path();
   std::vector<std::filesystem::path> named;
   for (const SweptKey& key : sweep.plan.keys)
-    for (const std::string& value : key.values) named.push_back(folder / value);
+    if (!key.numeric())
+      std::ranges::transform(key.values, std::back_inserter(named), [&](const auto& v) { return folder / v; });
   return heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.common.out) +
          note_of_files(sweep.base.document, named);
 }
