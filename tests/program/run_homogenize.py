@@ -37,6 +37,7 @@ class HomogenizeTest(ProgramTest):
             done = self.check_done(equidem("homogenize", case))
             for words in ("1 disc without contacts, the first disc 64 at (0.12, 0.04) m, makes the region", "Remove it"):
                 self.assertEqual(words in " ".join(done.stdout.split()), warned, done.stdout)
+            self.assertEqual("every disc carries load" in done.stdout, not warned, done.stdout)
 
     def homogenize(self, case, *options):
         return parse_json(self.check_done(equidem("homogenize", case, "--json", "-", *options)).stdout)

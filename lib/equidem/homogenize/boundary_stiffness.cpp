@@ -114,8 +114,14 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
 SampleSolver strain_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
                            EffectiveStiffness& result) {
   const bool displaced = options.boundary == Boundary::displacement;
-  return {assembly,  springs, options, displaced ? boundary_discs(assembly) : std::vector<std::uint8_t>{},
-          displaced, result};
+  std::vector<std::uint8_t> held;
+  if (displaced) {  // of discs without contacts no motion matters: they are rattlers
+    held.resize(assembly.size());
+    const std::vector<std::uint8_t> outer = boundary_discs(assembly);
+    for (const Contact& c : assembly.contacts)
+      for (const std::int32_t disc : {c.i, c.j}) held[disc] = outer[disc];
+  }
+  return {assembly, springs, options, held, displaced, result};
 }
 
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
