@@ -274,7 +274,7 @@ TEST_CASE("negative_tangential_springs_beside_bending_have_the_state_and_the_ine
   const Assembly block = bonded_network(false);
   const std::vector<Support> held{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
   const LoadCase load{{.group = "right", .kind = LoadKind::total, .force = {0.3, 0.2}, .moment = 0.01}};
-  const DiscGroup &left = group(block, "left"), &right = group(block, "right");
+  const DiscGroup left = group(block, "left"), right = group(block, "right");
   const auto discs = static_cast<Eigen::Index>(block.size());
   std::int64_t stable = 0, unstable = 0, held_rotations = 0;
   for (const double kT : {-0.01, -0.1, -0.3, -1.0}) {
