@@ -56,6 +56,14 @@ WRONG = {
         (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(120), 0.5, weighting="voronoi")), "springs of each contact"),
     "a_matrix_of_springs_with_a_misspelt_key":
         (lambda: eq.stiffness_matrix(BLOCK, {"kN": 1.0, "kt": 0.5}), "'kT'"),
+    "a_test_of_strength_of_another_name":
+        (lambda: eq.StrengthSample(BLOCK, (1.0, 0.5)).strength(1.0, 1.0, kind="tensile"), "tension"),
+    "a_load_that_falls_to_twice_its_peak": (lambda: eq.StrengthSample(BLOCK, (1.0, 0.5), fallen_to=2.0), "fallen_to is 2"),
+    "a_notch_of_negative_length":
+        (lambda: eq.StrengthSample(BLOCK, (1.0, 0.5)).strength(1.0, 1.0, notch=-1e-3), "a notch of -0.001"),
+    "two_densities":
+        (lambda: eq.Case(assembly=BLOCK, springs=eq.Springs(np.ones(len(BLOCK.contacts)), 0.5, density=2000.0), density=1000.0),
+         "the density is 1000"),
     "a_negative_bond_width": (lambda: eq.tension_test(BLOCK, eq.Springs(1.0, 0.5, bond_width=-1)), "bond_width"),
     "a_bond_width_beside_springs_of_each_contact":
         (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(120), 0.5, bond_width=1)), "springs of each contact"),

@@ -130,3 +130,33 @@ def test_a_folder_of_results_is_changed_only_by_what_is_asked(tmp_path):
         case(1e-3).set("springs.kT", -5e9).set("springs.kN", -1).solve(out=tmp_path / "failed")
     case(1e-3).solve(out=tmp_path / "dry", dry_run=True)
     assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+
+
+def test_a_run_goes_on_with_its_own_assembly_alone(tmp_path):
+    def case(block):
+        return eq.Case(assembly=block, springs=eq.Springs(1e9, 5e8), density=2000.0, supports=[{"group": "left", "ux": 0, "uy": 0}],
+                       loads=[{"group": "right", "force": (1e3, 0)}], run={"duration": 1e-5})
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-2)
+    case(block).run(out=tmp_path / "out")
+    case(block).run(out=tmp_path / "out", resume=True)
+    with pytest.raises(eq.BadInput, match="not that of the run that is to go on"):
+        case(eq.hexagonal(columns=6, rows=5, radius=1e-2)).run(out=tmp_path / "out", resume=True)
+
+
+def test_a_packing_between_walls_is_measured():
+    packed = eq.pack({"grains": 60, "solid_fraction": "auto", "box": [0.1, 0.1], "radii": {"smallest": 0.004, "largest": 0.006},
+                      "overlap": 1e-3}, (1e8, 0.5e8)).assembly
+    copy = pickle.loads(pickle.dumps(packed))
+    assert packed.area == copy.area > 0.0099
+    assert {"left", "right", "bottom", "top"} <= set(packed.groups)
+    assert eq.homogenize(packed, (1e8, 0.5e8)).shear_modulus == eq.homogenize(copy, (1e8, 0.5e8)).shear_modulus
+
+
+def test_groups_of_arrays_are_named_beside_those_that_there_are(tmp_path):
+    block = eq.hexagonal(columns=5, rows=5, radius=1e-2)
+    held = [{"group": np.arange(5), "ux": 0, "uy": 0}]
+    eq.Case(assembly=block, springs=(1e9, 5e8), supports=held, loads=[{"group": [20, 21], "force": (1e3, 0)}],
+            output={"assembly": "json"}).solve(out=tmp_path / "out")
+    again = eq.read(tmp_path / "out/assembly.json")
+    result = eq.solve(again, (1e9, 5e8), supports=held, loads=[{"group": [20, 21, 22], "force": (1e3, 0)}])
+    assert np.abs(result.displacements).max() > 0

@@ -237,6 +237,15 @@ Problem problem_of(Case resolved, Purpose purpose) {
   return problem;
 }
 
+Assembly with_cells(Assembly assembly) {
+  if (assembly.contacts.empty()) return assembly;
+  Assembly measured = assembly;
+  const auto refused = failure_of([&] { measure_cells(measured); });
+  if (refused && refused->kind() != ErrorKind::bad_input && refused->kind() != ErrorKind::computation_failed)
+    throw Error(*refused);
+  return refused ? assembly : measured;
+}
+
 bool acts(const Case& resolved) {
   return resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
 }

@@ -55,6 +55,9 @@ struct Problem {
   }
 };
 
+/// The assembly with its cells, or as it is where it has no contacts or its cells cannot be measured.
+Assembly with_cells(Assembly assembly);
+
 /// Use of an assembly; the memory is estimated by it before the assembly is built.
 enum class Purpose { factorize, step };
 

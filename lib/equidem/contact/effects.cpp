@@ -9,8 +9,11 @@
 namespace equidem {
 namespace {
 
-Effects::Entry rotation_entry(bool tangential_springs, bool off_lines, Rotation rotation) {
-  if (!tangential_springs && !off_lines) return {"rotation", false, "kT = 0 everywhere: nothing can turn a disc"};
+Effects::Entry rotation_entry(bool tangential_springs, bool off_lines, bool bends, Rotation rotation) {
+  if (!tangential_springs && !off_lines)
+    return {"rotation", false,
+            bends ? "kT = 0 everywhere: bending springs alone, which resist rotations, are left out; give a small kT"
+                  : "kT = 0 everywhere: nothing can turn a disc"};
   if (rotation == Rotation::restrained) {
     return {"rotation", false, "restrained as asked: moments hold the discs, and the stress need not be symmetric"};
   }
@@ -33,7 +36,7 @@ std::string Effects::report() const {
 Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines) {
   Effects effects;
   effects.tangential_springs = springs.any_tangential();
-  const Effects::Entry turning = rotation_entry(effects.tangential_springs, off_lines, rotation);
+  const Effects::Entry turning = rotation_entry(effects.tangential_springs, off_lines, springs.bends(), rotation);
   effects.rotation = turning.active;
   effects.restrained = !turning.active && (effects.tangential_springs || off_lines);
 

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import os
 import pathlib
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -109,7 +111,10 @@ class Case:
             self._assembly = Assembly._of(self._assembly._native.with_springs(each.at_contacts(self._assembly)))
             self._tables["assembly"]["own_springs"] = True
             if each.density is not None:
-                self._tables["assembly"].setdefault("density", each.density)
+                density = self._tables["assembly"].setdefault("density", each.density)
+                if density != each.density:
+                    raise BadInput(f"the density is {density:g} kg/m³, and that of the springs {each.density:g}",
+                                   "discs have one", "Leave one of them out", "density")
 
     def _with_group(self, table: str, entry: Mapping[str, Any]) -> dict[str, Any]:
         """The entry with the name of its group, made where it lists discs."""
@@ -125,7 +130,10 @@ class Case:
             if known.get("discs") == discs:
                 named["group"] = known["name"]
                 return named
-        named["group"] = f"discs {len(self._groups) + 1}"
+        taken = {known.get("name") for known in self._groups}
+        if self._assembly is not None:
+            taken |= set(self._assembly.groups)
+        named["group"] = next(name for name in map("discs {}".format, itertools.count(1)) if name not in taken)
         self._groups.append({"name": named["group"], "discs": discs})
         return named
 
@@ -187,7 +195,9 @@ class Case:
             return
         path = pathlib.Path(out).absolute() / "given_assembly.h5"
         before = path.exists()
-        if not (before and options.get("resume")):
+        if before and options.get("resume"):
+            self._check_same_assembly(path)
+        else:
             self._assembly.write(path, overwrite=bool(options.get("overwrite")))
         copied = self.copy()
         copied._assembly = None
@@ -200,6 +210,17 @@ class Case:
                 with contextlib.suppress(OSError):  # the folder holds more
                     path.parent.rmdir()
             raise
+
+    def _check_same_assembly(self, path: pathlib.Path) -> None:
+        """Refuse to go on with another assembly, or other springs of its contacts, than those of the folder."""
+        assert self._assembly is not None
+        with tempfile.TemporaryDirectory() as folder:
+            own = pathlib.Path(folder) / "own.h5"
+            self._assembly.write(own)
+            same = own.read_bytes() == path.read_bytes()
+        if not same:
+            raise BadInput("the assembly is not that of the run that is to go on", f"'{path}' has another one",
+                           "Give the assembly of that run, or choose another out", "assembly")
 
     def solve(self, **options: Any) -> Result:
         """Equilibrium under supports and loads, or Abe's tension test (table `test`).

@@ -21,6 +21,7 @@
 #include "equidem/packing/packing.hpp"
 
 #include "module.hpp"
+#include "problem.hpp"
 
 namespace equidem::python {
 namespace {
@@ -179,7 +180,7 @@ py::tuple pack_discs(const Floats& radii, std::pair<double, double> box, const s
     const GrainPacking packing = pack(options);
     measures = measure(packing);
     seconds = packing.seconds;
-    return shared(network_of(packing, {}));
+    return shared(with_cells(network_of(packing, {})));
   });
   py::dict found;
   found["solid_fraction"] = measures.solid_fraction;

@@ -113,8 +113,7 @@ py::tuple strength_of(const StrengthSample& sample, const std::string& kind, dou
     const ContactStrengths strengths = contact_strengths(
         sample.assembly(),
         {.tension = tension, .shear = shear, .friction = friction, .weibull_modulus = weibull_modulus, .seed = seed});
-    return sample.strength(kind == "tension" ? StrengthTestKind::tension : StrengthTestKind::compression, strengths,
-                           notch);
+    return sample.strength(enum_from<StrengthTestKind>(kind), strengths, notch);
   });
   return py::make_tuple(found.stress, found.events, found.energy_error);
 }

@@ -681,6 +681,9 @@ int calibrate(const CalibrateVerb& options) {
     } catch (const ErrorWith<Calibration>& ended) {
       failure = ended;
       return ended.found();
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::bad_input || !error.where().empty()) throw;
+      throw Error(error.kind(), error.problem(), error.why(), error.remedy(), resolved.where("material"));
     }
   }();
   if (refusal) {

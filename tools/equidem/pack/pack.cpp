@@ -347,7 +347,7 @@ int run(const CommonOptions& common) {
   if (packing.failure) failure = failure_of([&] { located(resolved, "method", [&] { throw *packing.failure; }); });
   deliver(common, "done", packing_results(resolved, packing, network, density, measures), std::move(times), parts,
           failure);
-  hand_over(std::shared_ptr<const Assembly>(packed, &network));
+  if (arrays_wanted()) hand_over(std::make_shared<const Assembly>(with_cells(network)));
   return 0;
 }
 

@@ -61,6 +61,9 @@ StrengthSample::StrengthSample(Assembly assembly, ContactSprings springs, const 
   if (assembly_.periodic())
     bad_input("a periodic cell has no ends to pull at or press", "a strength is that of a free sample",
               "Set periodic = false; a mean strain breaks a cell by quasistatic");
+  if (!(options_.fallen_to > 0 && options_.fallen_to < 1))
+    bad_input_at("fallen_to", fmt::format("fallen_to is {:g}", options_.fallen_to),
+                 "it is the share of the peak at which a test is over, between 0 and 1", "Leave it at 0.5");
   const Ends ends = ends_of(options_.axis);
   const std::string low = ends.low, high = ends.high;
   const DiscGroup &stays = group(assembly_, low), &moves = group(assembly_, high);
@@ -92,6 +95,8 @@ SampleStrength StrengthSample::strength(StrengthTestKind kind, const ContactStre
   const BreakageScene scene{assembly_, springs_, strengths, path};
   BreakableSystem system(breakable_network(scene, effects, wanted.supports, options_.solver));
   if (notch) {
+    if (!(*notch > 0))
+      bad_input(fmt::format("a notch of {:g} m", *notch), "its length is positive", "Leave it out for none");
     if (!(*notch < width_))
       bad_input(fmt::format("a notch of {:g} m in a sample of {:g} m", *notch, width_), "it would cut it in two",
                 "Give a shorter one");

@@ -52,6 +52,13 @@ struct StrengthTestOptions {
 
 enum class StrengthTestKind { tension, compression };
 
+template <>
+struct EnumNames<StrengthTestKind> {
+  using enum StrengthTestKind;
+  static constexpr const char* what = "test of strength";
+  static constexpr NamedValue<StrengthTestKind> list[] = {{tension, "tension"}, {compression, "compression"}};
+};
+
 /// The peak of the load under control of the motion, which is that of the envelope under it.
 struct SampleStrength {
   double stress = 0;  ///< Pa > 0, the largest load over the width of the sample; infinite: the load never falls
@@ -62,7 +69,8 @@ struct SampleStrength {
 /// A free sample that is tested again and again, with any strengths.
 class StrengthSample {
  public:
-  /// \throws Error (bad_input) where the assembly is periodic, lacks the groups of its ends, or these are one
+  /// \throws Error (bad_input) where the assembly is periodic, lacks the groups of its ends, or these are one; where
+  ///         `fallen_to` is no share
   StrengthSample(Assembly assembly, ContactSprings springs, const StrengthTestOptions& options);
 
   /// \param notch m: the length 2a of a straight cut in the middle of the sample, across the axis; none: no notch
