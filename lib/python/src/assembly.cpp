@@ -20,6 +20,7 @@
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/packing.hpp"
 
+#include "command.hpp"
 #include "module.hpp"
 #include "problem.hpp"
 
