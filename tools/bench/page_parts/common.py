@@ -2,6 +2,7 @@
 """Runs of equidem, and what both pages say of them."""
 import json
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -61,7 +62,9 @@ class Run:
 def stamp(result=None):
     """Commit of the source, date, processor and compiler of what is measured, the last two from the JSON of a study."""
     def git(*words):
-        return subprocess.run(["git", *words], capture_output=True, text=True, cwd=ROOT, check=False).stdout.strip()
+        if shutil.which("git") is None:
+        return "unknown"
+    return subprocess.run(["git", *words], capture_output=True, text=True, cwd=ROOT, check=False).stdout.strip()
 
     found = {"commit": git("rev-parse", "--short=8", "HEAD"), "date": time.strftime("%Y-%m-%d")}
     if result:
