@@ -63,8 +63,8 @@ def stamp(result=None):
     """Commit of the source, date, processor and compiler of what is measured, the last two from the JSON of a study."""
     def git(*words):
         if shutil.which("git") is None:
-        return "unknown"
-    return subprocess.run(["git", *words], capture_output=True, text=True, cwd=ROOT, check=False).stdout.strip()
+            return "unknown"
+        return subprocess.run(["git", *words], capture_output=True, text=True, cwd=ROOT, check=False).stdout.strip()
 
     found = {"commit": git("rev-parse", "--short=8", "HEAD"), "date": time.strftime("%Y-%m-%d")}
     if result:
