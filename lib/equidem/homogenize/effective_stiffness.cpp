@@ -41,18 +41,11 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
   }
 }
 
-/// From the change of the nominal stress P = J sigma F^-T to that of the Cauchy stress: at the strain h
-/// d sigma = dP + sigma_0 h^T - tr(h) sigma_0. A rotation h of the whole changes P by h sigma_0, which
-/// is known without a solution where discs turn along.
+/// A rotation h of the whole changes the nominal stress by h sigma_0, which is known without a solution where discs
+/// turn along.
 void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
   result.stress_at_rest = at_rest;
-  Matrix3 change{};
-  for (int k = 0; k < 3; ++k) {
-    const Tensor2& h = unit_gradients[k];
-    const Tensor2 sigma = at_rest * transposed(h) + (-(h.xx + h.yy)) * at_rest;
-    const Voigt s = voigt_stress(sigma);
-    change[0][k] = s.xx, change[1][k] = s.yy, change[2][k] = s.xy;
-  }
+  const Matrix3 change = change_to_cauchy(at_rest);
   result.cauchy = result.stiffness + change;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
@@ -92,11 +85,7 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
   result.error_bound += rounding * largest_entry(result.stiffness);
   result.scale(unit);
   result.cauchy = result.stiffness;
-  if (springs.prestressed()) {
-    std::vector<ContactForce> at_rest(assembly.contacts.size());
-    for (std::size_t c = 0; c < at_rest.size(); ++c) at_rest[c] = force_at_rest(assembly, c);
-    add_stress_at_rest(macroscopic_stress(assembly, at_rest), result);
-  }
+  if (springs.prestressed()) add_stress_at_rest(mean_stress_at_rest(assembly), result);
   if (!std::isfinite(8 * largest_entry(result.stiffness))) {  // sums of entries, too
     bad_input("the stiffness overflows a double", "the largest is 1.8e308", "Check the units of sizes and springs");
   }
@@ -136,6 +125,22 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
 }
 
 }  // namespace
+
+Tensor2 mean_stress_at_rest(const Assembly& assembly) {
+  std::vector<ContactForce> at_rest(assembly.contacts.size());
+  for (std::size_t c = 0; c < at_rest.size(); ++c) at_rest[c] = force_at_rest(assembly, c);
+  return macroscopic_stress(assembly, at_rest);
+}
+
+Matrix3 change_to_cauchy(const Tensor2& at_rest) {
+  Matrix3 change{};
+  for (int k = 0; k < 3; ++k) {
+    const Tensor2& h = unit_gradients[k];
+    const Voigt s = voigt_stress(at_rest * transposed(h) + (-(h.xx + h.yy)) * at_rest);
+    change[0][k] = s.xx, change[1][k] = s.yy, change[2][k] = s.xy;
+  }
+  return change;
+}
 
 void EffectiveStiffness::scale(double factor) {
   stiffness = factor * stiffness;

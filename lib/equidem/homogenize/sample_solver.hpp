@@ -118,4 +118,11 @@ void solve_tractions(const Assembly& assembly, const ContactSprings& springs, co
 LinearSystem strain_system(const Assembly& assembly, const ContactSprings& springs,
                            Rotation rotation = Rotation::from_scene);
 
+/// Pa, of the forces that contacts carry at rest.
+Tensor2 mean_stress_at_rest(const Assembly& assembly);
+
+/// From the change of the nominal stress P = J sigma F^-T by unit strains to that of the Cauchy stress: at the strain h
+/// d sigma = dP + sigma_0 h^T - tr(h) sigma_0.
+Matrix3 change_to_cauchy(const Tensor2& at_rest);
+
 }  // namespace equidem

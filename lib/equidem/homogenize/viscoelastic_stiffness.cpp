@@ -380,11 +380,14 @@ ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const Con
   ViscoelasticStiffness result;
   result.times = elastic.times;
   result.solver = "UMFPACK LU of complex numbers";
+  const Matrix3 change = springs.prestressed() ? change_to_cauchy(mean_stress_at_rest(assembly)) : Matrix3{};
   Progress progress("frequencies");
   try {
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
-      result.harmonic.push_back(
+      HarmonicStiffness& found = result.harmonic.emplace_back(
           at_frequency(sample, viscoelasticity, frequencies[k], options, assembly.area(), result));
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b) found.storage[a][b] += 0.5 * (change[a][b] + change[b][a]);
       progress.update(static_cast<double>(k + 1) / static_cast<double>(frequencies.size()));
     }
   } catch (const Error& error) {

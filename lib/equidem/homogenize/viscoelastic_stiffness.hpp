@@ -24,7 +24,8 @@ struct HarmonicStiffness {
   std::complex<double> normal, tangential;  ///< springs over the elastic ones
   /// Pa, symmetric part of the stress by strain (Voigt, engineering shear): C = 1/A sum kN dn_a dn_b + kT ds_a ds_b
   /// over the deformations by unit strains a and b, without conjugation, with the form of forces at rest where they
-  /// count. It is stationary at the motions, so that its error is the square of theirs.
+  /// count, and what leads from the nominal to the Cauchy stress, as EffectiveStiffness has it. It is stationary at the
+  /// motions, so that its error is the square of theirs.
   Matrix3 storage{}, loss{};
   double relative_residual = 0;  ///< largest of the load cases
   double condition = 0;          ///< as that of EffectiveStiffness
