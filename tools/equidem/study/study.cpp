@@ -262,8 +262,8 @@ double measured_number(const Delivery& result, const std::string& measure) {
   return *number;
 }
 
-/// What decides the values of a study: its file, the case and the files that it reads.
-std::string deciding_text(const std::filesystem::path& path, CommonOptions options) {
+/// The study file, the case and the files that it reads decide the values of a study.
+std::string inputs_of_study(const std::filesystem::path& path, CommonOptions options) {
   const StudyCase resolved = read_study_case(path);
   options.verb = resolved.verb;
   options.case_file = resolved.case_file;
@@ -449,7 +449,7 @@ int run_verb(const StudyVerb& verb) {
   const Study study = study_of_file(verb.file, verb.common);
   if (verb.common.dry_run) return dry_run_study(verb, study);
   const std::string identity = study.checksum(fmt::format("{} seed {} threads {} {}", machine_text(), verb.options.seed,
-                                                          thread_count(), deciding_text(verb.file, verb.common)));
+                                                          thread_count(), inputs_of_study(verb.file, verb.common)));
   const auto lock = lock_out(verb.common);
   StudySamples kept = samples_to_keep(verb, study, identity);
   const auto& folder = verb.common.out;

@@ -344,7 +344,7 @@ std::string shortened(const std::vector<std::string>& values) {
                      values.back(), values.size());
 }
 
-/// What has to agree for --resume: the case, and the files that it or a value of a key names.
+/// The case, and the files that it or a value of a key names, have to agree for --resume.
 std::string deciding_text(const Sweep& sweep) {
   const auto folder = sweep.options.common.case_file.parent_path();
   std::vector<std::filesystem::path> named;

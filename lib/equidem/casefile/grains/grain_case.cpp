@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
@@ -52,9 +54,21 @@ void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene)
             "Remove it, or give grains half_axes");
 }
 
-/// Keys of contacts that do nothing without another one. One table of contacts that gives it is enough, 0 too: others,
+/// [collisions] and [[pair]] as they are given, those of stages too.
+std::vector<TomlValue> tables_of_contacts(const TomlValue& root) {
+  std::vector<TomlValue> tables;
+  const auto collect = [&](const TomlValue& within) {
+    if (const TomlValue* table = within.find("collisions")) tables.push_back(*table);
+    std::ranges::copy(repeated(within, "pair"), std::back_inserter(tables));
+  };
+  collect(root);
+  for (const TomlValue& stage : repeated(root, "stage")) collect(stage);
+  return tables;
+}
+
+/// Some keys of contacts do nothing without another one. One table of contacts that gives it is enough, 0 too: others,
 /// and the points of a sweep, may differ.
-void refuse_idle_contact_keys(const TomlValue& root) {
+void refuse_idle_contact_keys(const std::vector<TomlValue>& tables) {
   struct Idle {
     const char* key;
     std::vector<std::string> needs;
@@ -68,20 +82,13 @@ void refuse_idle_contact_keys(const TomlValue& root) {
       {"rolling_ratio", {"rolling_friction"}, "the rolling spring carries nothing without rolling friction"},
       {"rolling_damping", {"rolling_friction"}, "the rolling dashpot carries nothing without rolling friction"},
       {"cohesion_range", {"cohesion"}, "bodies attract by a force within that range"}};
-  std::vector<const TomlValue*> tables;
-  const auto collect = [&](const TomlValue& within) {
-    if (const TomlValue* table = within.find("collisions")) tables.push_back(table);
-    for (const TomlValue& pair : repeated(within, "pair")) tables.push_back(&pair);
-  };
-  collect(root);
-  for (const TomlValue& stage : repeated(root, "stage")) collect(stage);
   for (const Idle& idle : keys) {
-    const auto gives = [&](const TomlValue* table) {
-      return std::ranges::any_of(idle.needs, [&](const std::string& key) { return table->find(key) != nullptr; });
+    const auto gives = [&](const TomlValue& table) {
+      return std::ranges::any_of(idle.needs, [&](const std::string& key) { return table.find(key) != nullptr; });
     };
     if (std::ranges::any_of(tables, gives)) continue;
-    for (const TomlValue* table : tables)
-      if (const TomlValue* given = table->find(idle.key))
+    for (const TomlValue& table : tables)
+      if (const TomlValue* given = table.find(idle.key))
         fail_at(*given, fmt::format("{} is given without {}", idle.key, idle.needs.front()), idle.why,
                 fmt::format("Add {} = ..., or remove it", idle.needs.front()));
   }
@@ -161,9 +168,9 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   TomlValue root = parse_document(content, name, overrides);
   resolve_springs_file(root, folder);
   resolve_strength_file(root, folder, CaseKind::colliding);
-  const TomlValue given = root;
+  const std::vector<TomlValue> contacts = tables_of_contacts(root);
   GrainTables tables = grain_file().read(root, folder);
-  refuse_idle_contact_keys(given);
+  refuse_idle_contact_keys(contacts);
   take_run(tables);
   tables.common.density = one_density(
       root, {{"grains", tables.common.density}, {"springs", tables.springs ? tables.springs->density : std::nullopt}});

@@ -216,10 +216,6 @@ void refuse_long_ways_in_cell(const GrainSystem& system, double reach) {
 }
 
 bool may_cross(const GrainSystem& system, double reach) {
-  const auto turns_far = [&](std::int32_t body) {
-    return std::abs(system.dt() * system.bodies.motions[body].spin) > quarter_turn;
-  };
-  if (std::ranges::any_of(system.shapes.shaped, turns_far)) return true;
   // two bodies come nearer by twice the reach at most
   return !(reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius);
 }
