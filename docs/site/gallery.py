@@ -74,6 +74,7 @@ def drawn(program, words, case, target, seconds):
             except subprocess.TimeoutExpired:
                 running.kill()
                 running.communicate()
+                return False  # it may have left part of a picture
         found = next((path for pattern in PICTURES for path in sorted(pathlib.Path(name).glob(pattern))), None)
         if found is None:
             return False

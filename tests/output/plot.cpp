@@ -275,6 +275,26 @@ TEST_CASE("a_gnuplot_that_ignores_signals_is_killed_with_all_that_it_has_started
   CHECK(watch.seconds() < 5);  // not the 100 s of what holds its stderr
 }
 
+TEST_CASE("no_part_of_a_picture_is_left_behind") {
+  const bool interrupted = GENERATE(false, true);
+  CAPTURE(interrupted);
+  const TemporaryFolder folder, programs;
+  write_file(programs / "gnuplot",
+             std::string("#!/bin/sh\nprintf '<svg' > fig7.svg\nprintf '\\211PNG\\r\\n' > fig7.png\n") +
+                 (interrupted ? "kill -INT $PPID\n/bin/sleep 20\n" : ""),
+             false);
+  fs::permissions(programs / "gnuplot", fs::perms::owner_all);
+  const SearchPath path(programs.path().string());
+  const InterruptCatcher catcher;
+  if (interrupted) {
+    CHECK_THROWS_AS(write_plot(folder.path(), "fig7", rich_plot(), false), Error);
+  } else {
+    CHECK_THAT(write_plot(folder.path(), "fig7", rich_plot(), false), Catch::Contains("no whole picture"));
+  }
+  for (const char* file : {"fig7.csv", "fig7.gp"}) CHECK(fs::exists(folder / file));
+  CHECK(folder.files() == 2);
+}
+
 TEST_CASE("a_plot_that_cannot_be_drawn_is_refused") {
   const TemporaryFolder folder;
   const Plot good{.series = {{.label = "s", .x = {1, 2}, .y = {1, 2}}}};

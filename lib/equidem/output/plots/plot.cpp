@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -400,7 +401,18 @@ std::string without_markup(const std::string& label) {
   return text;
 }
 
-/// Write data and script, and let gnuplot draw.
+/// Whether a picture has its end: gnuplot exits with 0 where a full disk cuts one.
+bool is_whole(const std::filesystem::path& picture) {
+  constexpr std::streamoff tail = 16;
+  std::ifstream file(picture, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file.tellg();
+  if (size < tail || !file.seekg(size - tail)) return false;
+  std::string text(tail, '\0');
+  file.read(text.data(), tail);
+  return text.find(picture.extension() == ".svg" ? "</svg>" : "IEND") != std::string::npos;
+}
+
+/// Write data and script, and let gnuplot draw. An interruption leaves no part of a picture.
 std::string draw(const std::filesystem::path& folder, const std::string& name, const std::string& title,
                  const std::string& csv, const std::string& script, bool overwrite) {
   const auto path = [&](const char* extension) { return folder / (name + extension); };
@@ -414,14 +426,18 @@ std::string draw(const std::filesystem::path& folder, const std::string& name, c
     for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
   };
   remove_pictures();
-  const GnuplotRun run = DrawnFigures::gnuplot_hangs() ? GnuplotRun{false, "gnuplot did not end at the plot before"}
-                                                       : run_gnuplot(folder, name + ".gp");
+  GnuplotRun run{false, "gnuplot did not end at the plot before"};
+  try {
+    if (!DrawnFigures::gnuplot_hangs()) run = run_gnuplot(folder, name + ".gp");
+  } catch (...) {
+    remove_pictures();
+    throw;
+  }
   std::string missing;
-  if (!run.succeeded || !std::filesystem::exists(path(".svg"), ignored) ||
-      !std::filesystem::exists(path(".png"), ignored)) {
+  if (!run.succeeded || !is_whole(path(".svg")) || !is_whole(path(".png"))) {
     remove_pictures();
     missing = fmt::format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
-                          run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(),
+                          run.reason.empty() ? "gnuplot wrote no whole picture" : run.reason, path(".csv").string(),
                           path(".gp").string());
   }
   DrawnFigures::add({.name = name,
