@@ -116,7 +116,10 @@ void GrainSimulation::advance(std::int64_t steps) {
   for (std::int64_t k = 0; k < steps; ++k) {
     const std::int64_t now = self.system.step;
     const GrainCounters counters = self.system.counters;
-    if (!self.kept || now - self.kept->step >= steps_between_kept_states) self.kept = self.state();
+    if (!self.kept || now - self.kept->step >= steps_between_kept_states) {
+      self.kept.reset();  // the new one takes its memory
+      self.kept = self.state();
+    }
     try {
       self.system.contacts.record = k + 1 == steps || now + 1 - self.kept->step >= steps_between_kept_states;
       self.make_step();

@@ -111,6 +111,9 @@ ContactState state_of(const GrainSystem& system, const Candidate& candidate) {
 
 std::vector<ContactState> contact_states(const GrainSystem& system) {
   std::vector<ContactState> states;
+  std::size_t most = system.contacts.candidates.size();
+  each_list(system.contacts, [&](const NearList& list) { most += list.count; });
+  states.reserve(most);
   each_list(system.contacts, [&](const NearList& list) {
     for (std::size_t p = 0; p < list.count; ++p)
       if (list.touching(p)) states.push_back(state_of(system, list, p));

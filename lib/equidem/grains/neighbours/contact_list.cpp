@@ -204,7 +204,8 @@ NewList::NewList(const GrainSystem& system, NearList& list, std::size_t block)
     : system_(system),
       list_(list),
       old_(list.emptied()),
-      end_(static_cast<std::int32_t>(system.bodies.blocks.end(block))) {}
+      end_(static_cast<std::int32_t>(system.bodies.blocks.end(block))),
+      next_(old_.count > 0 ? old_.pair(0) : PairKey::last()) {}
 
 std::size_t NewList::add(const PairKey& pair) {
   const std::size_t p = list_.count++, k = p % lanes_of_pairs;

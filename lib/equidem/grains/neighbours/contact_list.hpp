@@ -117,6 +117,9 @@ struct PairKey {
   std::int32_t i = 0;
   PeriodicImage j;
   auto operator<=>(const PairKey&) const = default;
+
+  /// Behind all pairs.
+  static constexpr PairKey last() { return {std::numeric_limits<std::int32_t>::max(), {}}; }
 };
 
 /// The contacts of a block of bodies that touch or nearly touch, ordered as PairKey. Bodies that are taken back into a
@@ -196,18 +199,28 @@ class NewList {
 
   /// Contacts stay until the loop has seen them end.
   void keep_contacts_before(const PairKey& pair) {
-    for (; at_ < old_.count && old_.pair(at_) < pair; ++at_)
+    for (; next_ < pair; advance())
       if (old_.touching(at_)) keep();
   }
   /// Keep the contacts that were not found again.
-  void keep_others() { keep_contacts_before({std::numeric_limits<std::int32_t>::max(), {}}); }
+  void keep_others() { keep_contacts_before(PairKey::last()); }
+  /// Advance to a pair that is near: keep it, or list it where it was not.
+  void take(const PairKey& pair) {
+    keep_contacts_before(pair);
+    if (next_ == pair) {
+      keep();
+      advance();
+    } else {
+      add(pair, {});
+    }
+  }
   /// Advance to a pair; keep it if it is in contact. \return whether it is
   bool keep_contact(const PairKey& pair) {
     keep_contacts_before(pair);
-    listed_ = at_ < old_.count && old_.pair(at_) == pair;
+    listed_ = next_ == pair;
     if (!listed_ || !old_.touching(at_)) return false;
     keep();
-    ++at_;
+    advance();
     return true;
   }
   /// NearList::normal of this pair in the list before, {} if it was not listed.
@@ -217,20 +230,22 @@ class NewList {
   void leave(const PairKey& pair, bool near, Vec2 apart = {}) {
     if (near && listed_) keep();
     if (near && !listed_) add(pair, apart);
-    if (listed_) ++at_;
+    if (listed_) advance();
   }
   /// A new contact, which is apart, with its constants. \return its place
   std::size_t add(const PairKey& pair, Vec2 apart);
 
  private:
   std::size_t add(const PairKey& pair);
-  void keep() { list_.copy(old_, at_, add(old_.pair(at_))); }
+  void keep() { list_.copy(old_, at_, add(next_)); }
+  void advance() { next_ = ++at_ < old_.count ? old_.pair(at_) : PairKey::last(); }
 
   const GrainSystem& system_;
   NearList& list_;
   NearList old_;
-  std::int32_t end_;  ///< of the bodies of the block
-  std::size_t at_ = 0;
+  std::int32_t end_;    ///< of the bodies of the block
+  std::size_t at_ = 0;  ///< place in the list before, and the pair there
+  PairKey next_;
   bool listed_ = false;
 };
 

@@ -29,24 +29,47 @@ bool is_bonded_image(const GrainSystem& system, std::int32_t i, const PeriodicIm
   return bond->image.a == j.a && bond->image.b == j.b;
 }
 
+/// The neighbours of a body that are nearer than the margin of the pairs; without a branch for each, since which ones
+/// are cannot be predicted.
+/// \param[out] near their places in the list of neighbours; at least as long as that of the body
+/// \return their number
+std::size_t find_near_of(const GrainSystem& system, std::size_t i, std::vector<std::int64_t>& near) {
+  const NeighbourList& list = *system.contacts.neighbours;
+  const GrainBody* constants = system.bodies.constants.data();
+  const GrainMotion* motions = system.bodies.motions.data();
+  const std::int32_t* partner = list.partner.data();
+  const PeriodicImage* images = system.cell.active ? system.contacts.images.data() : nullptr;
+  const Vec2 centre = motions[i].position;
+  const double own = constants[i].radius + system.contacts.pairs.skin.margin + system.range;
+  const std::int64_t end = list.begin[i + 1];
+  std::size_t count = 0;
+  for (std::int64_t p = list.begin[i]; p < end; ++p) {
+    const std::int32_t j = images == nullptr ? partner[p] : images[p].body;
+    Vec2 branch = motions[j].position - centre;
+    if (images != nullptr) branch += system.cell.now.shift(images[p]);
+    const double far = own + constants[j].radius;
+    near[count] = p;
+    count += dot(branch, branch) <= far * far ? 1 : 0;
+  }
+  return count;
+}
+
 void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   const NeighbourList& list = *system.contacts.neighbours;
-  const BodyBlocks& blocks = system.bodies.blocks;
+  const std::size_t begin = system.bodies.blocks.begin(b), end = system.bodies.blocks.end(b);
   NewList pairs(system, system.contacts.of(Between::discs).blocks[b], b);
   const bool shapes = !system.shapes.parts.empty(), cell = system.cell.active;
-  std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(blocks.begin(b)));
-  for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
-    const Vec2 centre = system.bodies.motions[i].position;
-    const double own = system.bodies.constants[i].radius + system.contacts.pairs.skin.margin + system.range;
+  std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(begin));
+  std::vector<std::int64_t> near;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto listed = static_cast<std::size_t>(list.begin[i + 1] - list.begin[i]);
+    if (near.size() < listed) near.resize(2 * listed);
+    const std::size_t count = find_near_of(system, i, near);
     const auto first = static_cast<std::int32_t>(i);
-    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const PeriodicImage j = cell ? system.contacts.images[p] : PeriodicImage{list.partner[p]};
+    for (std::size_t k = 0; k < count; ++k) {
+      const PeriodicImage j = system.contacts.neighbour(near[k]);
       if (cell ? is_bonded_image(system, first, j) : are_tied(system.bonds.tied, next_bond, first, j.body)) continue;
-      if (shapes && !are_discs(system, first, j.body)) continue;
-      Vec2 branch = system.bodies.motions[j.body].position - centre;
-      if (cell) branch += system.cell.now.shift(j);
-      const double far = own + system.bodies.constants[j.body].radius;
-      if (!pairs.keep_contact({first, j})) pairs.leave({first, j}, dot(branch, branch) <= far * far);
+      if (!shapes || are_discs(system, first, j.body)) pairs.take({first, j});
     }
   }
   pairs.keep_others();
