@@ -50,6 +50,16 @@ def test_a_result_is_shown_as_text_and_html():
     assert "<table>" in factor.solve(np.zeros((len(BLOCK), 3)))._repr_html_()
 
 
+def test_the_stiffness_is_the_sum_of_springs_times_its_derivatives():
+    cell = eq.delaunay(discs=60, seed=2, periodic=True)
+    result = eq.homogenize(cell, SPRINGS, sensitivities=True)
+    assert result.dC_dkN.shape == (len(cell.contacts), 3, 3) and result.units["dC_dkN"] == ""
+    assert not result.dC_dkN.flags.writeable and "dC_dkM" not in result
+    whole = 1e9 * result.dC_dkN.sum(axis=0) + 0.5e9 * result.dC_dkT.sum(axis=0)
+    assert np.allclose(whole, result.stiffness, rtol=0, atol=1e-9 * np.abs(whole).max())
+    assert "dC_dkN" not in eq.homogenize(cell, SPRINGS)
+
+
 def test_load_cases_have_their_own_arrays():
     result = eq.solve(BLOCK, SPRINGS, supports=[{"group": "left", "ux": 0, "uy": 0}],
                       loads=[{"group": "right", "force": (1, 0), "case": "pull"},

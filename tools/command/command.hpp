@@ -190,7 +190,8 @@ struct ResultArray {
   std::variant<const double*, const std::int32_t*, const std::complex<double>*> numbers{};
   std::size_t rows = 0;
   std::size_t columns = 1;
-  std::size_t stride = 1;  ///< numbers from one row to the next
+  std::size_t stride = 1;          ///< numbers from one row to the next
+  std::size_t matrix_columns = 0;  ///< rows are matrices of so many columns; 0: they are none
 };
 
 /// Results as they are given to deliver, and what hand_over adds.

@@ -58,9 +58,18 @@ def tension_test(assembly: Assembly, springs: Any = None, *, stress: float = 1e6
     return Case(assembly=assembly, springs=springs, test=test, **tables).solve(accuracy=accuracy)
 
 
-def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = None, **tables: Any) -> Result:
+def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = None, sensitivities: bool = False,
+               **tables: Any) -> Result:
     """Effective stiffness (3, 3) in Pa (Voigt, engineering shear) and moduli of the continuum that an assembly stands
-    for, with bounds and the bound of the error."""
+    for, with bounds and the bound of the error; arrays as those of `Case.homogenize`.
+
+    Parameters
+    ----------
+    sensitivities : bool
+        Whether to return the derivatives of the stiffness by the springs of each contact.
+    """
+    if sensitivities:
+        tables["homogenize"] = {**tables.get("homogenize", {}), "sensitivities": True}
     return Case(assembly=cell, springs=springs, **tables).homogenize(accuracy=accuracy)
 
 

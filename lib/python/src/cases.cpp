@@ -63,6 +63,8 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
         [&](const auto* first) {
           const auto size = static_cast<py::ssize_t>(sizeof(*first));
           const py::ssize_t stride = static_cast<py::ssize_t>(array.stride) * size;
+          if (const auto inner = static_cast<py::ssize_t>(array.matrix_columns); inner > 0)
+            return view(array.owner, first, {rows, columns / inner, inner}, {stride, inner * size, size});
           return columns == 1 ? view(array.owner, first, {rows}, {stride})
                               : view(array.owner, first, {rows, columns}, {stride, size});
         },

@@ -25,6 +25,7 @@
 
 #include "accuracy.hpp"
 #include "homogenize/ensemble.hpp"
+#include "homogenize/spring_effects.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 
@@ -481,7 +482,7 @@ constexpr std::array written_states{WrittenState{"_strain_xx", "strain xx"}, Wri
                                     WrittenState{"_strain_xy", "shear strain"}};
 
 BoundsOptions bounds_options(const Case& resolved) {
-  BoundsOptions options = resolved.homogenize;
+  BoundsOptions options = resolved.homogenize.solution;
   options.rotation = resolved.rotation;
   options.solver = resolved.solver;
   return options;
@@ -495,11 +496,26 @@ std::optional<RelationBeside> relation_of(const Problem& problem) {
 /// \param failure set where the bounds are not finished
 BoundedStiffness homogenize(const Problem& problem, std::optional<Error>& failure) {
   const Case& resolved = problem.resolved;
-  return casefile::with_place(resolved.homogenize.boundary ? resolved.where("homogenize.boundary") : "", [&] {
+  return casefile::with_place(resolved.homogenize.solution.boundary ? resolved.where("homogenize.boundary") : "", [&] {
     return found_by<BoundedStiffness>(failure, [&] {
       return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
     });
   });
+}
+
+/// \param failure set where there are none, unless it is
+std::optional<SpringSensitivities> sensitivities_of(const Problem& problem, const EffectiveStiffness& result,
+                                                    std::optional<Error>& failure) {
+  const HomogenizeCase& wanted = problem.resolved.homogenize;
+  if (!wanted.sensitivities && !wanted.spring_scatter) return {};
+  const char* const key = wanted.sensitivities ? "homogenize.sensitivities" : "homogenize.spring_scatter";
+  std::optional<SpringSensitivities> found;
+  const std::optional<Error> refused = failure_of([&] {
+    casefile::with_place(problem.resolved.where(key),
+                         [&] { found = spring_sensitivities(problem.assembly, problem.springs.springs, result); });
+  });
+  if (!failure) failure = refused;
+  return found;
 }
 
 void write_states(const CommonOptions& options, const Problem& problem, const EffectiveStiffness& result) {
@@ -540,6 +556,7 @@ struct Harmonic {
 struct Homogenized {
   std::optional<Problem> problem = {};
   BoundedStiffness stiffness = {};
+  std::optional<SpringSensitivities> sensitivities = {};
   std::optional<Harmonic> harmonic = {};
 };
 
@@ -554,6 +571,15 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
     };
     parts.push_back({viscoelastic_table_name, write, OutputPart::page, plot_files(moduli_over_frequency)});
     parts.back().files.insert(parts.back().files.begin(), viscoelastic_table_name);
+  }
+  if (resolved.homogenize.sensitivities) {
+    const auto write = [=](const CommonOptions& into) {
+      if (!found->sensitivities) return;
+      const Matrix3& stiffness = found->stiffness.result.stiffness;
+      write_csv(*into.out / sensitivities_name, sensitivity_table(*found->problem, stiffness, *found->sensitivities),
+                true);
+    };
+    parts.push_back({sensitivities_name, write, OutputPart::folder, {sensitivities_name}});
   }
   parts.push_back(assembly_part(resolved.output, [=]() -> const Assembly& { return found->problem->assembly; }));
   const auto write_all = [=](const CommonOptions& into) {
@@ -585,6 +611,14 @@ std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary, s
   if (failure && failure->kind() == ErrorKind::bad_input) throw Error(*failure);
   if (failure && result.stiffness.harmonic.empty()) return {};
   return result;
+}
+
+void refuse_sensitivities_of_samples(const Case& resolved, bool accuracy) {
+  const HomogenizeCase& wanted = resolved.homogenize;
+  if (!(wanted.sensitivities || wanted.spring_scatter) || !(resolved.ensemble || accuracy)) return;
+  bad_input_at(resolved.where(wanted.sensitivities ? "homogenize.sensitivities" : "homogenize.spring_scatter"),
+               "what springs do to the moduli is asked for beside [ensemble] or --accuracy",
+               "it is that of the contacts of one cell", "Homogenize one cell, or use 'equidem sweep' over its seeds");
 }
 
 void refuse_viscoelastic_samples(const Case& resolved, bool accuracy) {
@@ -630,6 +664,7 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
 int homogenize(const HomogenizeVerb& options) {
   Case resolved = read_case(options);
   refuse_viscoelastic_samples(resolved, options.accuracy.has_value());
+  refuse_sensitivities_of_samples(resolved, options.accuracy.has_value() && resolved.assembly.random());
   if (options.accuracy && resolved.assembly.random()) {
     if (options.resume)
       bad_input("--resume and --accuracy exclude each other", "what is sampled follows from the samples",
@@ -651,6 +686,7 @@ int homogenize(const HomogenizeVerb& options) {
   found->stiffness = homogenize(problem, failure);
   const EffectiveStiffness& result = found->stiffness.result;
   found->harmonic = harmonic_of(problem, result.boundary, failure);
+  found->sensitivities = sensitivities_of(problem, result, failure);
   const std::optional<Harmonic>& harmonic = found->harmonic;
   const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
@@ -658,6 +694,7 @@ int homogenize(const HomogenizeVerb& options) {
   if (harmonic) times.add(harmonic->stiffness.times);
   Results results = homogenized_results(problem, problem_results(problem, result.effects), problem.assembly.periodic(),
                                         found->stiffness, fabric(problem.assembly), relation_of(problem));
+  if (found->sensitivities) results.append(spring_effects(problem, result.stiffness, *found->sensitivities));
   results.set("strain_of_states", written_strain);
   if (options.accuracy)
     results.append(accuracy_results(solver_accuracy(
@@ -675,6 +712,8 @@ int homogenize(const HomogenizeVerb& options) {
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {found, &result.fluctuations[k]}));
   if (arrays_wanted() && harmonic) hand_over(viscoelastic_arrays(harmonic->stiffness));
+  if (arrays_wanted() && found->sensitivities && problem.resolved.homogenize.sensitivities)
+    hand_over(sensitivity_arrays(std::move(*found->sensitivities)));
   hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
   return 0;
 }

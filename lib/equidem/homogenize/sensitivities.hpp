@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What each spring does to the effective stiffness: exact derivatives, from the strain fields of the homogenization.
+///
+/// The energy of a pair of mean strains a, b is stationary in the fluctuations, so that a spring counts by its own
+/// stretch alone (Hellmann-Feynman). With the stretches n, the slips s and the relative rotations w of contact c under
+/// unit mean strains, and the area A,
+///
+///   dC_ab/dkN_c = n_a n_b/A,   dC_ab/dkT_c = s_a s_b/A,   dC_ab/dkM_c = w_a w_b/A.
+///
+/// Without forces at rest C = sum kN dC/dkN + kT dC/dkT + kM dC/dkM (Euler, C is homogeneous in the springs).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+
+namespace equidem {
+
+/// Per contact, rows and columns as those of `stiffness`; 0 where a contact carries no load.
+struct SpringSensitivities {
+  std::vector<Matrix3> by_kN, by_kT;  ///< Pa/Pa
+  std::vector<Matrix3> by_kM;         ///< 1/m²; empty where contacts do not bend
+};
+
+/// \param result of the same assembly and springs
+/// \throws Error (bad_input) for tractions, whose strains are not prescribed; where the network is not stable, since C
+///         changes without bound at a limit of stability
+SpringSensitivities spring_sensitivities(const Assembly& assembly, const ContactSprings& springs,
+                                         const EffectiveStiffness& result);
+
+/// Changes of the moduli (plane stress) by a change of the stiffness: EffectiveModuli linearized.
+struct ModuliChange {
+  double bulk_modulus_2d = 0, shear_modulus = 0, young_modulus = 0;
+  double poisson_ratio = 0;
+
+  ModuliChange& operator+=(const ModuliChange& other);
+};
+ModuliChange operator*(double factor, const ModuliChange& change);
+/// \param stiffness Pa, about which moduli change \param change of it
+ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change);
+
+/// Standard deviations of the moduli, to first order, where the springs of each contact (kN, kT and kM by one factor)
+/// scatter independently by a coefficient of variation.
+ModuliChange scatter_of_moduli(const ContactSprings& springs, const Matrix3& stiffness,
+                               const SpringSensitivities& sensitivities, double variation);
+
+}  // namespace equidem

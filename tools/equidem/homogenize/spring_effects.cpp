@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "homogenize/spring_effects.hpp"
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "equidem/core/text.hpp"
+
+#include "state_files.hpp"
+
+namespace equidem {
+namespace {
+
+/// The springs of a contact.
+struct SpringKind {
+  const char* name;
+  const char* unit;  ///< in the names of columns
+  std::vector<Matrix3> SpringSensitivities::*derivative;
+  double (*of)(const ContactSprings& springs, std::size_t contact);
+};
+
+constexpr std::array spring_kinds{
+    SpringKind{"kN", "Pa", &SpringSensitivities::by_kN, [](const ContactSprings& k, std::size_t c) { return k[c].kN; }},
+    SpringKind{"kT", "Pa", &SpringSensitivities::by_kT, [](const ContactSprings& k, std::size_t c) { return k[c].kT; }},
+    SpringKind{"kM", "N", &SpringSensitivities::by_kM,
+               [](const ContactSprings& k, std::size_t c) { return k.bending(c); }}};
+
+struct ModulusColumn {
+  const char* key;
+  const char* column;
+  const char* per_spring;  ///< suffix of the unit of a derivative by kN or kT
+  double ModuliChange::*value;
+};
+
+constexpr std::array modulus_columns{ModulusColumn{"bulk_modulus_2d", "dK_d", "", &ModuliChange::bulk_modulus_2d},
+                                     ModulusColumn{"shear_modulus", "dG_d", "", &ModuliChange::shear_modulus},
+                                     ModulusColumn{"young_modulus", "dE_d", "", &ModuliChange::young_modulus},
+                                     ModulusColumn{"poisson_ratio", "dnu_d", "_per_Pa", &ModuliChange::poisson_ratio}};
+
+/// The changes of the moduli where all springs of a kind grow by a common small factor, per this factor.
+ModuliChange change_by_all(const SpringKind& kind, const ContactSprings& springs, const Matrix3& stiffness,
+                           const SpringSensitivities& found) {
+  Matrix3 sum{};
+  const std::vector<Matrix3>& each = found.*kind.derivative;
+  for (std::size_t c = 0; c < each.size(); ++c) sum = sum + kind.of(springs, c) * each[c];
+  return change_of_moduli(stiffness, sum);
+}
+
+/// Relative changes of K, G and E, the change of nu, as a row of the table and in the JSON.
+Results changes_of(const std::string& kind, const EffectiveModuli& m, const ModuliChange& change) {
+  constexpr Shown shown{Shown::decimals, 5};
+  return Results()
+      .add("", "springs", "  all " + kind)
+      .add("bulk_modulus_2d", "dK/K", change.bulk_modulus_2d / m.bulk_modulus_2d, "", shown)
+      .add("shear_modulus", "dG/G", change.shear_modulus / m.shear_modulus, "", shown)
+      .add("young_modulus", "dE/E", change.young_modulus / m.young_stress, "", shown)
+      .add("poisson_ratio", "dnu", change.poisson_ratio, "", shown);
+}
+
+}  // namespace
+
+Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {
+  const ContactSprings& springs = problem.springs.springs;
+  const EffectiveModuli moduli = effective_moduli(stiffness);
+  Results out;
+  const HomogenizeCase& wanted = problem.resolved.homogenize;
+  if (wanted.sensitivities) {
+    std::vector<Results> rows;
+    Results of_kinds;
+    for (const SpringKind& kind : spring_kinds) {
+      if ((found.*kind.derivative).empty()) continue;
+      rows.push_back(changes_of(kind.name, moduli, change_by_all(kind, springs, stiffness, found)));
+      of_kinds.set(kind.name, rows.back());
+    }
+    out.block(
+           "\nchanges of the moduli (plane stress) by the springs, per relative change of all springs of a kind: "
+           "relative ones of K, G and E, those of nu\n")
+        .table("", rows);
+    out.set("sensitivities", of_kinds);
+  }
+  if (wanted.spring_scatter) {
+    const ModuliChange sd = scatter_of_moduli(springs, stiffness, found, *wanted.spring_scatter);
+    out.line("scatter", "standard deviations where the springs of each contact scatter by ")
+        .add("scatter/springs", "", *wanted.spring_scatter, "independently", {Shown::percent, 3})
+        .note(", to first order: ")
+        .add("scatter/bulk_modulus_2d", "K", sd.bulk_modulus_2d, "Pa", {.digits = 4})
+        .add("scatter/shear_modulus", "G", sd.shear_modulus, "Pa", {.digits = 4})
+        .add("scatter/young_modulus", "E (plane stress)", sd.young_modulus, "Pa", {.digits = 4})
+        .add("scatter/poisson_ratio", "nu (plane stress)", sd.poisson_ratio, "", {.digits = 4});
+  }
+  return out;
+}
+
+Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {
+  const std::vector<Contact>& contacts = problem.assembly.contacts;
+  const ContactSprings& springs = problem.springs.springs;
+  std::vector<std::int64_t> numbers(contacts.size());
+  for (std::size_t c = 0; c < numbers.size(); ++c) numbers[c] = static_cast<std::int64_t>(c);
+  Table table;
+  table.add("contact", numbers).add("i", contacts, &Contact::i).add("j", contacts, &Contact::j);
+  const auto each_kind = [&](const auto& visit) {
+    for (const SpringKind& kind : spring_kinds)
+      if (!(found.*kind.derivative).empty()) visit(kind, found.*kind.derivative);
+  };
+  each_kind([&](const SpringKind& kind, const auto&) {
+    table.add(fmt::format("{}_{}", kind.name, kind.unit), numbers,
+              [&](std::int64_t c) { return kind.of(springs, static_cast<std::size_t>(c)); });
+  });
+  each_kind([&](const SpringKind& kind, const std::vector<Matrix3>& derivatives) {
+    for (const ModulusColumn& modulus : modulus_columns) {
+      const bool bending = kind.derivative == &SpringSensitivities::by_kM;
+      const std::string unit = !bending ? modulus.per_spring : *modulus.per_spring == '\0' ? "_per_m2" : "_per_N";
+      table.add(fmt::format("{}{}{}", modulus.column, kind.name, unit), derivatives,
+                [&](const Matrix3& change) { return change_of_moduli(stiffness, change).*modulus.value; });
+    }
+  });
+  return table;
+}
+
+std::vector<ResultArray> sensitivity_arrays(SpringSensitivities found) {
+  std::vector<ResultArray> arrays;
+  for (const SpringKind& kind : spring_kinds) {
+    std::vector<Matrix3>& derivatives = found.*kind.derivative;
+    if (derivatives.empty()) continue;
+    const bool bending = kind.derivative == &SpringSensitivities::by_kM;
+    arrays.push_back(array_of(fmt::format("dC_d{}", kind.name), bending ? "1/m2" : "", std::move(derivatives), 9));
+    arrays.back().matrix_columns = 3;
+  }
+  return arrays;
+}
+
+}  // namespace equidem

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What springs do to the moduli: report, JSON, table and arrays of `equidem homogenize`.
+#pragma once
+
+#include <vector>
+
+#include "equidem/homogenize/sensitivities.hpp"
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/results.hpp"
+
+#include "command.hpp"
+#include "problem.hpp"
+
+namespace equidem {
+
+inline constexpr const char* sensitivities_name = "sensitivities.csv";
+
+/// What [homogenize] sensitivities and spring_scatter ask for.
+Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
+
+/// One row per contact: contact, i, j, kN_Pa, kT_Pa, [kM_N,] and of each spring the derivatives of K, G, E and nu
+/// (plane stress).
+Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
+
+/// dC_dkN, dC_dkT and, where contacts bend, dC_dkM, in 1/m²: (contacts, 3, 3).
+std::vector<ResultArray> sensitivity_arrays(SpringSensitivities found);
+
+}  // namespace equidem
