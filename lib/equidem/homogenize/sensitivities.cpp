@@ -38,7 +38,7 @@ void refuse_unsuitable(const EffectiveStiffness& result) {
   if (unstable == 0) return;
   bad_input(
       fmt::format("derivatives by springs are asked for, and the network has {}", counted(unstable, "unstable mode")),
-      "it is no equilibrium that small changes of springs keep", "Choose springs at which it is stable");
+      "their stiffness is that of no state of rest", "Choose springs at which it is stable");
 }
 
 }  // namespace

@@ -638,6 +638,15 @@ void add_solver_of_complex(Results& results, const SolverOptions& asked) {
 /// A disc, of the motions under one boundary that are kept beside the solution under the next: measured.
 constexpr double bytes_beside_others = 350;
 
+/// Memory of the derivatives by springs, a disc.
+double bytes_of_sensitivities(const Problem& problem) {
+  const HomogenizeCase& wanted = problem.resolved.homogenize;
+  if (!wanted.sensitivities && !wanted.spring_scatter) return 0;
+  const double kinds = problem.springs.springs.bends() ? 3 : 2;
+  const Assembly& assembly = problem.assembly;
+  return kinds * sizeof(Matrix3) * static_cast<double>(assembly.contacts.size()) / static_cast<double>(assembly.size());
+}
+
 int dry_run_homogenization(const CommonOptions& options, const Problem& problem, std::optional<double> accuracy) {
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
@@ -657,7 +666,7 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
   return dry_run(options, problem, results, AssemblyKeys::all,
                  {.of_complex = problem.resolved.viscoelastic.has_value(),
-                  .bytes_of_disc = boundaries.size() > 1 ? bytes_beside_others : 0,
+                  .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) + bytes_of_sensitivities(problem),
                   .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
@@ -686,12 +695,15 @@ int homogenize(const HomogenizeVerb& options) {
   found->stiffness = homogenize(problem, failure);
   const EffectiveStiffness& result = found->stiffness.result;
   found->harmonic = harmonic_of(problem, result.boundary, failure);
+  Stopwatch watch;
   found->sensitivities = sensitivities_of(problem, result, failure);
+  const double seconds_of_sensitivities = watch.lap();
   const std::optional<Harmonic>& harmonic = found->harmonic;
   const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
   times.add(result.times);
   if (harmonic) times.add(harmonic->stiffness.times);
+  if (found->sensitivities) times.add("sensitivities", seconds_of_sensitivities);
   Results results = homogenized_results(problem, problem_results(problem, result.effects), problem.assembly.periodic(),
                                         found->stiffness, fabric(problem.assembly), relation_of(problem));
   if (found->sensitivities) results.append(spring_effects(problem, result.stiffness, *found->sensitivities));

@@ -73,9 +73,7 @@ Results spring_effects(const Problem& problem, const Matrix3& stiffness, const S
       rows.push_back(changes_of(kind.name, moduli, change_by_all(kind, springs, stiffness, found)));
       of_kinds.set(kind.name, rows.back());
     }
-    out.block(
-           "\nchanges of the moduli (plane stress) by the springs, per relative change of all springs of a kind: "
-           "relative ones of K, G and E, those of nu\n")
+    out.block("\nchanges (plane stress) where all springs of a kind grow by a common factor, over its change\n")
         .table("", rows);
     out.set("sensitivities", of_kinds);
   }
