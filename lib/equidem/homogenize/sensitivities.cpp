@@ -72,12 +72,12 @@ SpringSensitivities spring_sensitivities(const Assembly& assembly, const Contact
   return found;
 }
 
-ModuliChange& ModuliChange::operator+=(const ModuliChange& other) {
-  bulk_modulus_2d += other.bulk_modulus_2d;
-  shear_modulus += other.shear_modulus;
-  young_modulus += other.young_modulus;
-  poisson_ratio += other.poisson_ratio;
-  return *this;
+Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities,
+                          std::size_t contact) {
+  Matrix3 change =
+      springs[contact].kN * sensitivities.by_kN[contact] + springs[contact].kT * sensitivities.by_kT[contact];
+  if (!sensitivities.by_kM.empty()) change = change + springs.bending(contact) * sensitivities.by_kM[contact];
+  return change;
 }
 
 ModuliChange operator*(double factor, const ModuliChange& change) {
@@ -99,9 +99,7 @@ ModuliChange scatter_of_moduli(const ContactSprings& springs, const Matrix3& sti
                                const SpringSensitivities& sensitivities, double variation) {
   double squares[4] = {};
   for (std::size_t c = 0; c < sensitivities.by_kN.size(); ++c) {
-    Matrix3 change = springs[c].kN * sensitivities.by_kN[c] + springs[c].kT * sensitivities.by_kT[c];
-    if (!sensitivities.by_kM.empty()) change = change + springs.bending(c) * sensitivities.by_kM[c];
-    const ModuliChange of = change_of_moduli(stiffness, change);
+    const ModuliChange of = change_of_moduli(stiffness, change_by_springs(springs, sensitivities, c));
     const double changes[] = {of.bulk_modulus_2d, of.shear_modulus, of.young_modulus, of.poisson_ratio};
     for (std::size_t k = 0; k < 4; ++k) squares[k] += changes[k] * changes[k];
   }

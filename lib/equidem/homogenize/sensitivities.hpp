@@ -31,12 +31,13 @@ struct SpringSensitivities {
 SpringSensitivities spring_sensitivities(const Assembly& assembly, const ContactSprings& springs,
                                          const EffectiveStiffness& result);
 
+/// The change of the stiffness where the springs of a contact grow by a common factor, over its change, Pa.
+Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities, std::size_t contact);
+
 /// Changes of the moduli (plane stress) by a change of the stiffness: EffectiveModuli linearized.
 struct ModuliChange {
   double bulk_modulus_2d = 0, shear_modulus = 0, young_modulus = 0;
   double poisson_ratio = 0;
-
-  ModuliChange& operator+=(const ModuliChange& other);
 };
 ModuliChange operator*(double factor, const ModuliChange& change);
 /// \param stiffness Pa, about which moduli change \param change of it

@@ -576,10 +576,13 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
     const auto write = [=](const CommonOptions& into) {
       if (!found->sensitivities) return;
       const Matrix3& stiffness = found->stiffness.result.stiffness;
-      write_csv(*into.out / sensitivities_name, sensitivity_table(*found->problem, stiffness, *found->sensitivities),
-                true);
+      if (!into.pictures_only)
+        write_csv(*into.out / sensitivities_name, sensitivity_table(*found->problem, stiffness, *found->sensitivities),
+                  true);
+      draw_sensitivities(into, *found->problem, stiffness, *found->sensitivities);
     };
-    parts.push_back({sensitivities_name, write, OutputPart::folder, {sensitivities_name}});
+    parts.push_back({sensitivities_name, write, OutputPart::page, sensitivity_pictures(resolved.output)});
+    parts.back().files.insert(parts.back().files.begin(), sensitivities_name);
   }
   parts.push_back(assembly_part(resolved.output, [=]() -> const Assembly& { return found->problem->assembly; }));
   const auto write_all = [=](const CommonOptions& into) {
@@ -725,7 +728,7 @@ int homogenize(const HomogenizeVerb& options) {
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {found, &result.fluctuations[k]}));
   if (arrays_wanted() && harmonic) hand_over(viscoelastic_arrays(harmonic->stiffness));
   if (arrays_wanted() && found->sensitivities && problem.resolved.homogenize.sensitivities)
-    hand_over(sensitivity_arrays(std::move(*found->sensitivities)));
+    hand_over(sensitivity_arrays({found, &*found->sensitivities}));
   hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
   return 0;
 }

@@ -116,13 +116,61 @@ Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const 
   return table;
 }
 
-std::vector<ResultArray> sensitivity_arrays(SpringSensitivities found) {
+namespace {
+
+/// A picture: the change of a modulus by all springs of a contact, of E and G relative.
+struct EffectPicture {
+  const char* suffix;
+  const char* symbol;
+  const char* legend;
+  double ModuliChange::*change;
+  double EffectiveModuli::*whole;  ///< null: the change itself is drawn
+};
+
+constexpr std::array effect_pictures{
+    EffectPicture{"_effect_on_E", "E", "dE/E by the springs of a contact; widest line ", &ModuliChange::young_modulus,
+                  &EffectiveModuli::young_stress},
+    EffectPicture{"_effect_on_G", "G", "dG/G by the springs of a contact; widest line ", &ModuliChange::shear_modulus,
+                  &EffectiveModuli::shear_modulus},
+    EffectPicture{"_effect_on_nu", "nu", "dnu by the springs of a contact, red: up, blue: down; widest line ",
+                  &ModuliChange::poisson_ratio, nullptr}};
+
+}  // namespace
+
+std::vector<std::string> sensitivity_pictures(const OutputCase& wanted) {
+  std::vector<std::string> names;
+  for (const EffectPicture& picture : effect_pictures)
+    for (const std::string& name : state_names(pictures_of(wanted), picture.suffix)) names.push_back(name);
+  return names;
+}
+
+void draw_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
+                        const SpringSensitivities& found) {
+  const ContactSprings& springs = problem.springs.springs;
+  const EffectiveModuli moduli = effective_moduli(stiffness);
+  for (const EffectPicture& picture : effect_pictures) {
+    std::vector<ContactForce> lines(found.by_kN.size());
+    for (std::size_t c = 0; c < lines.size(); ++c)
+      lines[c].normal = change_of_moduli(stiffness, change_by_springs(springs, found, c)).*picture.change /
+                        (picture.whole == nullptr ? 1 : moduli.*picture.whole);
+    const std::string& title = problem.resolved.title;
+    write_state_picture(options, problem.resolved.output, picture.suffix,
+                        {.assembly = problem.assembly, .contact_forces = lines},
+                        {.title = fmt::format("{}{}what the springs of each contact do to {}", title,
+                                              title.empty() ? "" : ": ", picture.symbol),
+                         .lines = picture.legend,
+                         .unit_of_lines = ""});
+  }
+}
+
+std::vector<ResultArray> sensitivity_arrays(const std::shared_ptr<const SpringSensitivities>& found) {
   std::vector<ResultArray> arrays;
   for (const SpringKind& kind : spring_kinds) {
-    std::vector<Matrix3>& derivatives = found.*kind.derivative;
+    const std::vector<Matrix3>& derivatives = *found.*kind.derivative;
     if (derivatives.empty()) continue;
     const bool bending = kind.derivative == &SpringSensitivities::by_kM;
-    arrays.push_back(array_of(fmt::format("dC_d{}", kind.name), bending ? "1/m2" : "", std::move(derivatives), 9));
+    arrays.push_back(array_of(fmt::format("dC_d{}", kind.name), bending ? "1/m2" : "",
+                              std::shared_ptr<const std::vector<Matrix3>>(found, &derivatives), 9));
     arrays.back().matrix_columns = 3;
   }
   return arrays;

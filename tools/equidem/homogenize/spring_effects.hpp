@@ -3,6 +3,8 @@
 /// What springs do to the moduli: report, JSON, table and arrays of `equidem homogenize`.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "equidem/homogenize/sensitivities.hpp"
@@ -23,7 +25,12 @@ Results spring_effects(const Problem& problem, const Matrix3& stiffness, const S
 /// (plane stress).
 Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
 
+/// Pictures of what the springs of each contact do to E, G and nu (plane stress), where [output] asks for some.
+std::vector<std::string> sensitivity_pictures(const OutputCase& wanted);
+void draw_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
+                        const SpringSensitivities& found);
+
 /// dC_dkN, dC_dkT and, where contacts bend, dC_dkM, in 1/m²: (contacts, 3, 3).
-std::vector<ResultArray> sensitivity_arrays(SpringSensitivities found);
+std::vector<ResultArray> sensitivity_arrays(const std::shared_ptr<const SpringSensitivities>& found);
 
 }  // namespace equidem

@@ -71,6 +71,9 @@ struct PictureOptions {
   std::vector<DrawnSupport> supports = {};
   std::vector<DrawnGauge> gauges = {};
   std::vector<DrawnCrack> cracks = {};
+  /// Legend of the lines, before the number of the widest one and its unit.
+  std::string lines = "red: tension, blue: compression; widest line ";
+  std::string unit_of_lines = "N/m";
 };
 
 /// The factor of displacements that makes the largest one visible: 1, 2 or 5 times a power of ten, at least 1, with
