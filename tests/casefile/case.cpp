@@ -78,8 +78,8 @@ TEST_CASE("homogenization_and_ensembles_say_what_their_file_says") {
   CHECK(c.assembly.density == 2650.0);
   CHECK(c.assembly.body == Body::disc);
   CHECK(parsed(ensemble_case, {"assembly.body=sphere"}).assembly.body == Body::sphere);
-  CHECK(c.homogenize.solution.boundary == Boundary::displacement);
-  CHECK(c.homogenize.solution.bounds == BoundsWanted::all);
+  CHECK(c.homogenize.boundary == Boundary::displacement);
+  CHECK(c.homogenize.bounds == BoundsWanted::all);
   REQUIRE(c.ensemble);
   CHECK(c.ensemble->plan.discs == std::vector<std::int64_t>{30, 60, 120});
   CHECK(c.ensemble->plan.samples == 4);
@@ -110,7 +110,7 @@ TEST_CASE("the_resolved_case_reads_back_as_the_same_case") {
   CHECK(second.solver.memory_limit == first.solver.memory_limit);
   CHECK(second.assembly.delaunay.radii.largest == first.assembly.delaunay.radii.largest);
   CHECK(second.assembly.density == first.assembly.density);
-  CHECK(second.homogenize.solution.boundary == first.homogenize.solution.boundary);
+  CHECK(second.homogenize.boundary == first.homogenize.boundary);
   REQUIRE(second.ensemble.has_value() == first.ensemble.has_value());
   if (first.ensemble) CHECK(second.ensemble->plan.discs == first.ensemble->plan.discs);
 }

@@ -67,7 +67,7 @@ void check_case(const Case& resolved, bool homogenize) {
     bad_input_at(resolved.where("ensemble"), "the case has an ensemble", "equidem-mpi homogenizes one cell",
                  "Take [ensemble] out (--set ensemble=none), or use 'equidem homogenize'");
   }
-  const auto& boundary = resolved.homogenize.solution.boundary;
+  const auto& boundary = resolved.homogenize.boundary;
   if (homogenize && boundary && *boundary != Boundary::periodic) {
     bad_input_at(resolved.where("homogenize.boundary"), fmt::format("the boundary is \"{}\"", to_string(*boundary)),
                  "equidem-mpi homogenizes periodic cells", "Leave it out, or use 'equidem homogenize'");

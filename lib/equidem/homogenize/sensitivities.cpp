@@ -80,11 +80,6 @@ Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitiviti
   return change;
 }
 
-ModuliChange operator*(double factor, const ModuliChange& change) {
-  return {factor * change.bulk_modulus_2d, factor * change.shear_modulus, factor * change.young_modulus,
-          factor * change.poisson_ratio};
-}
-
 ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change) {
   const auto [K, G] = isotropic_part(stiffness);
   const auto [dK, dG] = isotropic_part(change);
@@ -96,15 +91,14 @@ ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change) {
 }
 
 ModuliChange scatter_of_moduli(const ContactSprings& springs, const Matrix3& stiffness,
-                               const SpringSensitivities& sensitivities, double variation) {
+                               const SpringSensitivities& sensitivities) {
   double squares[4] = {};
   for (std::size_t c = 0; c < sensitivities.by_kN.size(); ++c) {
     const ModuliChange of = change_of_moduli(stiffness, change_by_springs(springs, sensitivities, c));
     const double changes[] = {of.bulk_modulus_2d, of.shear_modulus, of.young_modulus, of.poisson_ratio};
     for (std::size_t k = 0; k < 4; ++k) squares[k] += changes[k] * changes[k];
   }
-  return variation *
-         ModuliChange{std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2]), std::sqrt(squares[3])};
+  return {std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2]), std::sqrt(squares[3])};
 }
 
 }  // namespace equidem

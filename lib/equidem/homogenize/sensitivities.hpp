@@ -39,13 +39,12 @@ struct ModuliChange {
   double bulk_modulus_2d = 0, shear_modulus = 0, young_modulus = 0;
   double poisson_ratio = 0;
 };
-ModuliChange operator*(double factor, const ModuliChange& change);
 /// \param stiffness Pa, about which moduli change \param change of it
 ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change);
 
-/// Standard deviations of the moduli, to first order, where the springs of each contact (kN, kT and kM by one factor)
-/// scatter independently by a coefficient of variation.
+/// Standard deviations of the moduli over the coefficient of variation of the springs, to first order, where those of
+/// each contact (kN, kT and kM by one factor) scatter independently.
 ModuliChange scatter_of_moduli(const ContactSprings& springs, const Matrix3& stiffness,
-                               const SpringSensitivities& sensitivities, double variation);
+                               const SpringSensitivities& sensitivities);
 
 }  // namespace equidem

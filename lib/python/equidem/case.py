@@ -235,7 +235,7 @@ class Case:
         """Effective stiffness and moduli, with bounds; of many random cells with the table `ensemble`.
 
         Arrays: fluctuations.xx.displacements, ... for the unit mean strains xx, yy and xy. With
-        ``homogenize.sensitivities`` the derivatives of the stiffness by the springs of each contact, dC_dkN and dC_dkT
+        ``sensitivities=True`` the derivatives of the stiffness by the springs of each contact, dC_dkN and dC_dkT
         (contacts, 3, 3) and, where contacts bend, dC_dkM in 1/m². With the table
         `viscoelastic` also viscoelastic.frequencies (n) in Hz and, complex, viscoelastic.shear_moduli,
         .bulk_moduli_2d and .young_moduli (plane strain) in Pa, .poisson_ratios (plane strain), (n) each, and

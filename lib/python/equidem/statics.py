@@ -68,9 +68,7 @@ def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = 
     sensitivities : bool
         Whether to return the derivatives of the stiffness by the springs of each contact.
     """
-    if sensitivities:
-        tables["homogenize"] = {**tables.get("homogenize", {}), "sensitivities": True}
-    return Case(assembly=cell, springs=springs, **tables).homogenize(accuracy=accuracy)
+    return Case(assembly=cell, springs=springs, **tables).homogenize(accuracy=accuracy, sensitivities=sensitivities)
 
 
 def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = None, **moduli: Any) -> Result:

@@ -595,7 +595,7 @@ struct CalibrateVerb {
 };
 
 CalibrateOptions calibrate_options(const Case& resolved) {
-  return {.homogenize = {.boundary = resolved.homogenize.solution.boundary.value_or(Boundary::periodic),
+  return {.homogenize = {.boundary = resolved.homogenize.boundary.value_or(Boundary::periodic),
                          .rotation = resolved.rotation,
                          .solver = resolved.solver},
           .weighting = resolved.weighting,

@@ -384,7 +384,7 @@ const char* joins_sides(const AssemblyCase& assembly) {
 }
 
 HomogenizeOptions options_of(const Case& resolved) {
-  const auto& boundary = resolved.homogenize.solution.boundary;
+  const auto& boundary = resolved.homogenize.boundary;
   if (!boundary && !resolved.assembly.periodic()) {
     bad_input_at(resolved.where("ensemble"), "the cells of the ensemble have free boundaries",
                  "their moduli lie between two answers, by displacements and by tractions at the boundary",

@@ -468,7 +468,7 @@ Results homogenized_results(const Problem& problem, Results out, bool periodic, 
 namespace {
 
 struct HomogenizeVerb : CommonOptions {
-  bool resume = false;
+  bool resume = false, sensitivities = false;
   std::optional<double> accuracy;
 };
 
@@ -482,7 +482,7 @@ constexpr std::array written_states{WrittenState{"_strain_xx", "strain xx"}, Wri
                                     WrittenState{"_strain_xy", "shear strain"}};
 
 BoundsOptions bounds_options(const Case& resolved) {
-  BoundsOptions options = resolved.homogenize.solution;
+  BoundsOptions options = resolved.homogenize;
   options.rotation = resolved.rotation;
   options.solver = resolved.solver;
   return options;
@@ -496,7 +496,7 @@ std::optional<RelationBeside> relation_of(const Problem& problem) {
 /// \param failure set where the bounds are not finished
 BoundedStiffness homogenize(const Problem& problem, std::optional<Error>& failure) {
   const Case& resolved = problem.resolved;
-  return casefile::with_place(resolved.homogenize.solution.boundary ? resolved.where("homogenize.boundary") : "", [&] {
+  return casefile::with_place(resolved.homogenize.boundary ? resolved.where("homogenize.boundary") : "", [&] {
     return found_by<BoundedStiffness>(failure, [&] {
       return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
     });
@@ -506,14 +506,9 @@ BoundedStiffness homogenize(const Problem& problem, std::optional<Error>& failur
 /// \param failure set where there are none, unless it is
 std::optional<SpringSensitivities> sensitivities_of(const Problem& problem, const EffectiveStiffness& result,
                                                     std::optional<Error>& failure) {
-  const HomogenizeCase& wanted = problem.resolved.homogenize;
-  if (!wanted.sensitivities && !wanted.spring_scatter) return {};
-  const char* const key = wanted.sensitivities ? "homogenize.sensitivities" : "homogenize.spring_scatter";
   std::optional<SpringSensitivities> found;
-  const std::optional<Error> refused = failure_of([&] {
-    casefile::with_place(problem.resolved.where(key),
-                         [&] { found = spring_sensitivities(problem.assembly, problem.springs.springs, result); });
-  });
+  const std::optional<Error> refused =
+      failure_of([&] { found = spring_sensitivities(problem.assembly, problem.springs.springs, result); });
   if (!failure) failure = refused;
   return found;
 }
@@ -560,7 +555,8 @@ struct Homogenized {
   std::optional<Harmonic> harmonic = {};
 };
 
-std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Homogenized>& found) {
+std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Homogenized>& found,
+                                     bool sensitivities) {
   std::vector<OutputPart> parts{case_part([=]() -> const Case& { return found->problem->resolved; })};
   if (resolved.viscoelastic) {
     const auto write = [=](const CommonOptions& into) {
@@ -572,7 +568,7 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
     parts.push_back({viscoelastic_table_name, write, OutputPart::page, plot_files(moduli_over_frequency)});
     parts.back().files.insert(parts.back().files.begin(), viscoelastic_table_name);
   }
-  if (resolved.homogenize.sensitivities) {
+  if (sensitivities) {
     const auto write = [=](const CommonOptions& into) {
       if (!found->sensitivities) return;
       const Matrix3& stiffness = found->stiffness.result.stiffness;
@@ -616,14 +612,6 @@ std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary, s
   return result;
 }
 
-void refuse_sensitivities_of_samples(const Case& resolved, bool accuracy) {
-  const HomogenizeCase& wanted = resolved.homogenize;
-  if (!(wanted.sensitivities || wanted.spring_scatter) || !(resolved.ensemble || accuracy)) return;
-  bad_input_at(resolved.where(wanted.sensitivities ? "homogenize.sensitivities" : "homogenize.spring_scatter"),
-               "what springs do to the moduli is asked for beside [ensemble] or --accuracy",
-               "it is that of the contacts of one cell", "Homogenize one cell, or use 'equidem sweep' over its seeds");
-}
-
 void refuse_viscoelastic_samples(const Case& resolved, bool accuracy) {
   if (!resolved.viscoelastic || !(resolved.ensemble || accuracy)) return;
   bad_input_at(resolved.where("viscoelastic"), "[viscoelastic] is given beside [ensemble] or --accuracy",
@@ -643,14 +631,13 @@ constexpr double bytes_beside_others = 350;
 
 /// Memory of the derivatives by springs, a disc.
 double bytes_of_sensitivities(const Problem& problem) {
-  const HomogenizeCase& wanted = problem.resolved.homogenize;
-  if (!wanted.sensitivities && !wanted.spring_scatter) return 0;
   const double kinds = problem.springs.springs.bends() ? 3 : 2;
   const Assembly& assembly = problem.assembly;
   return kinds * sizeof(Matrix3) * static_cast<double>(assembly.contacts.size()) / static_cast<double>(assembly.size());
 }
 
-int dry_run_homogenization(const CommonOptions& options, const Problem& problem, std::optional<double> accuracy) {
+int dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem) {
+  const std::optional<double>& accuracy = options.accuracy;
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
   const std::string names = joined(boundaries, [](Boundary boundary) { return to_string(boundary); });
@@ -669,14 +656,17 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
   return dry_run(options, problem, results, AssemblyKeys::all,
                  {.of_complex = problem.resolved.viscoelastic.has_value(),
-                  .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) + bytes_of_sensitivities(problem),
+                  .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
+                                   (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
                   .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
 int homogenize(const HomogenizeVerb& options) {
   Case resolved = read_case(options);
   refuse_viscoelastic_samples(resolved, options.accuracy.has_value());
-  refuse_sensitivities_of_samples(resolved, options.accuracy.has_value() && resolved.assembly.random());
+  if (options.sensitivities && (resolved.ensemble || (options.accuracy && resolved.assembly.random())))
+    bad_input("--sensitivities is given beside [ensemble] or --accuracy", "it is about the contacts of one cell",
+              "Homogenize one cell, or use 'equidem sweep' over its seeds");
   if (options.accuracy && resolved.assembly.random()) {
     if (options.resume)
       bad_input("--resume and --accuracy exclude each other", "what is sampled follows from the samples",
@@ -687,19 +677,19 @@ int homogenize(const HomogenizeVerb& options) {
   if (options.resume)
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
   const auto found = std::make_shared<Homogenized>();
-  const std::vector<OutputPart> parts = output_parts(resolved, found);
+  const std::vector<OutputPart> parts = output_parts(resolved, found, options.sensitivities);
   OutputPlan(options).expect_results(parts);
   const auto lock = lock_out(options);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
   const Problem& problem = found->problem.emplace(prestressed(problem_of(std::move(resolved))));
-  if (options.dry_run) return dry_run_homogenization(options, problem, options.accuracy);
+  if (options.dry_run) return dry_run_homogenization(options, problem);
 
   std::optional<Error> failure;
   found->stiffness = homogenize(problem, failure);
   const EffectiveStiffness& result = found->stiffness.result;
   found->harmonic = harmonic_of(problem, result.boundary, failure);
   Stopwatch watch;
-  found->sensitivities = sensitivities_of(problem, result, failure);
+  if (options.sensitivities) found->sensitivities = sensitivities_of(problem, result, failure);
   const double seconds_of_sensitivities = watch.lap();
   const std::optional<Harmonic>& harmonic = found->harmonic;
   const StopsHeldBack held_back(failure);
@@ -727,8 +717,7 @@ int homogenize(const HomogenizeVerb& options) {
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {found, &result.fluctuations[k]}));
   if (arrays_wanted() && harmonic) hand_over(viscoelastic_arrays(harmonic->stiffness));
-  if (arrays_wanted() && found->sensitivities && problem.resolved.homogenize.sensitivities)
-    hand_over(sensitivity_arrays({found, &*found->sensitivities}));
+  if (arrays_wanted() && found->sensitivities) hand_over(sensitivity_arrays({found, &*found->sensitivities}));
   hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
   return 0;
 }
@@ -740,6 +729,9 @@ Run declare_homogenize(CLI::App& command) {
   add_common_options(command, *options);
   add_require_stable(command, *options);
   command.add_flag("--resume", options->resume, "with [ensemble]: keep the samples in --out, compute the others");
+  command.add_flag(
+      "--sensitivities", options->sensitivities,
+      "derivatives of the moduli by the springs of each contact:\nsensitivities.csv and pictures in --out");
   add_accuracy_option(
       command, options->accuracy,
       "random cells: the size and number that tell the moduli to X;\nelse: fail unless the error is below X");

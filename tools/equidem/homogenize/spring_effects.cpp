@@ -48,10 +48,10 @@ ModuliChange change_by_all(const SpringKind& kind, const ContactSprings& springs
 }
 
 /// Relative changes of K, G and E, the change of nu, as a row of the table and in the JSON.
-Results changes_of(const std::string& kind, const EffectiveModuli& m, const ModuliChange& change) {
+Results changes_of(const std::string& name, const EffectiveModuli& m, const ModuliChange& change) {
   constexpr Shown shown{Shown::decimals, 5};
   return Results()
-      .add("", "springs", "  all " + kind)
+      .add("", "springs", "  " + name)
       .add("bulk_modulus_2d", "dK/K", change.bulk_modulus_2d / m.bulk_modulus_2d, "", shown)
       .add("shear_modulus", "dG/G", change.shear_modulus / m.shear_modulus, "", shown)
       .add("young_modulus", "dE/E", change.young_modulus / m.young_stress, "", shown)
@@ -63,31 +63,21 @@ Results changes_of(const std::string& kind, const EffectiveModuli& m, const Modu
 Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {
   const ContactSprings& springs = problem.springs.springs;
   const EffectiveModuli moduli = effective_moduli(stiffness);
+  std::vector<Results> rows;
+  Results of_kinds;
+  for (const SpringKind& kind : spring_kinds) {
+    if ((found.*kind.derivative).empty()) continue;
+    rows.push_back(changes_of("all " + std::string(kind.name), moduli, change_by_all(kind, springs, stiffness, found)));
+    of_kinds.set(kind.name, rows.back());
+  }
+  rows.push_back(changes_of("each contact, scattering", moduli, scatter_of_moduli(springs, stiffness, found)));
+  of_kinds.set("scatter", rows.back());
   Results out;
-  const HomogenizeCase& wanted = problem.resolved.homogenize;
-  if (wanted.sensitivities) {
-    std::vector<Results> rows;
-    Results of_kinds;
-    for (const SpringKind& kind : spring_kinds) {
-      if ((found.*kind.derivative).empty()) continue;
-      rows.push_back(changes_of(kind.name, moduli, change_by_all(kind, springs, stiffness, found)));
-      of_kinds.set(kind.name, rows.back());
-    }
-    out.block("\nchanges (plane stress) where all springs of a kind grow by a common factor, over its change\n")
-        .table("", rows);
-    out.set("sensitivities", of_kinds);
-  }
-  if (wanted.spring_scatter) {
-    const ModuliChange sd = scatter_of_moduli(springs, stiffness, found, *wanted.spring_scatter);
-    out.line("scatter", "standard deviations where the springs of each contact scatter by ")
-        .add("scatter/springs", "", *wanted.spring_scatter, "independently", {Shown::percent, 3})
-        .note(", to first order: ")
-        .add("scatter/bulk_modulus_2d", "K", sd.bulk_modulus_2d, "Pa", {.digits = 4})
-        .add("scatter/shear_modulus", "G", sd.shear_modulus, "Pa", {.digits = 4})
-        .add("scatter/young_modulus", "E (plane stress)", sd.young_modulus, "Pa", {.digits = 4})
-        .add("scatter/poisson_ratio", "nu (plane stress)", sd.poisson_ratio, "", {.digits = 4});
-  }
-  return out;
+  out.block(
+         "\nchanges (plane stress) over that of all springs of a kind by a common factor; standard deviations over "
+         "that of\nfactors which scatter independently from contact to contact, to first order\n")
+      .table("", rows);
+  return out.set("sensitivities", of_kinds);
 }
 
 Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {

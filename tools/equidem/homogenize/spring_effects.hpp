@@ -18,7 +18,7 @@ namespace equidem {
 
 inline constexpr const char* sensitivities_name = "sensitivities.csv";
 
-/// What [homogenize] sensitivities and spring_scatter ask for.
+/// What --sensitivities asks for.
 Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
 
 /// One row per contact: contact, i, j, kN_Pa, kT_Pa, [kM_N,] and of each spring the derivatives of K, G, E and nu

@@ -330,19 +330,13 @@ void bind_breakage(File<CaseTables>& file) {
 void bind_tasks(File<CaseTables>& file) {
   file.table("homogenize", &CaseTables::homogenize, completed, "how the effective stiffness is found")
       .keys(
-          {key("boundary", &HomogenizeCase::solution, &BoundsOptions::boundary, or_auto,
+          {key("boundary", &BoundsOptions::boundary, or_auto,
                "how the mean strain enters; auto: periodic where the assembly is, else displacement and traction side "
                "by "
                "side"),
-           key("bounds", &HomogenizeCase::solution, &BoundsOptions::bounds,
+           key("bounds", &BoundsOptions::bounds,
                "affine: those that need no solution; all: also by uniform displacements and tractions at the boundary; "
-               "auto: all up to 20000 discs"),
-           key("sensitivities", &HomogenizeCase::sensitivities,
-               "derivatives of the moduli by the springs of each contact: their sums in the report, all of them in "
-               "sensitivities.csv"),
-           key("spring_scatter", &HomogenizeCase::spring_scatter, between(0, 1),
-               "coefficient of variation of the springs, independent from contact to contact: the report says by how "
-               "much the moduli scatter then, to first order")});
+               "auto: all up to 20000 discs")});
   file.table("ensemble", &CaseTables::ensemble,
              "many random samples (kind = delaunay or packing): mean, scatter, the size needed")
       .keys(

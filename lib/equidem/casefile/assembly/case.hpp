@@ -164,13 +164,6 @@ struct RunCase : casefile::RunTable {
   std::vector<Probe> probes;
 };
 
-/// [homogenize]
-struct HomogenizeCase {
-  BoundsOptions solution;
-  bool sensitivities = false;            ///< what each spring does to the moduli
-  std::optional<double> spring_scatter;  ///< coefficient of variation of the springs of a contact
-};
-
 /// A checked case file: complete, in range and without contradiction; in its document a
 /// springs file is replaced by its content. Conditions that depend on the assembly (non-empty
 /// groups, sufficient supports) are checked when the case is built and solved.
@@ -187,7 +180,7 @@ struct Case : CaseDocument {
   std::vector<Support> supports;       ///< with
   std::vector<NamedLoads> load_cases;  ///< at least one: without [[load]] one empty case
   std::vector<GroupCase> groups;
-  HomogenizeCase homogenize;
+  BoundsOptions homogenize;  ///< [homogenize]: boundary and bounds
   std::optional<EnsembleCase> ensemble;
   std::vector<NamedSchedule> schedules;  ///< for a run; statics takes the factor 1
   std::optional<RunCase> run;
