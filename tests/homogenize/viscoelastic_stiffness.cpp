@@ -224,6 +224,8 @@ TEST_CASE("under_forces_at_rest_the_complex_stiffness_is_that_of_dense_algebra")
     CHECK(largest(change) > 1e-3 * elastic.largest());
     for (const Viscoelasticity& law : pairs_of_models()) {
       if (!keeps_forces(law.normal) || !keeps_forces(law.tangential)) continue;
+      const bool all_laws = sample.name == "hexagonal";  // dense algebra of the larger ones takes long
+      if (!all_laws && law.normal.model == SpringModel::elastic) continue;
       const HarmonicStiffness c = harmonic(assembly, springs, law, 0.7, options);
       const DenseStiffness exact = dense_stiffness(assembly, springs, law, 0.7, held);
       const DenseStiffness without = dense_stiffness(assembly, elastic, law, 0.7, held);
@@ -233,6 +235,7 @@ TEST_CASE("under_forces_at_rest_the_complex_stiffness_is_that_of_dense_algebra")
       CHECK(difference < 2e-13 * std::max(1.0, 1e-2 * c.condition));
       CHECK(relative_difference(without.storage, exact.storage) > 1e-3);
       CHECK(c.error_bound < 1e-12 * (largest(c.storage) + largest(c.loss)));
+      if (!all_laws) break;
     }
   }
 }
