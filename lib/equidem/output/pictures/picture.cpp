@@ -453,7 +453,9 @@ void draw_legends(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
   if (!scene.values.empty()) draw_colours(canvas, scene);
   if (scene.force_chains)
-    canvas.text(scene.options.lines + with_unit(scene.widest_force, scene.options.unit_of_lines),
+    canvas.text(scene.options.lines + (scene.options.unit_of_lines.empty()
+                                           ? fmt::format("{:.3g}", scene.widest_force)
+                                           : with_unit(scene.widest_force, scene.options.unit_of_lines)),
                 {page_margin + frame.room.x, frame.height - 46.0}, small_text, TextAnchor::right, ink);
   draw_texts(canvas, frame, scene.options.title, scene.caption);
 }
