@@ -27,18 +27,17 @@ constexpr std::array spring_kinds{
                [](const ContactSprings& k, std::size_t c) { return k.bending(c); }}};
 
 struct ModulusColumn {
-  const char* key;
-  const char* column;
-  const char* per_spring;  ///< suffix of the unit of a derivative by kN or kT
+  const char* name;
+  const char *by_stiffness, *by_moment;  ///< units of derivatives by kN or kT, and by kM, in the names of columns
   double ModuliChange::*value;
 };
 
-constexpr std::array modulus_columns{ModulusColumn{"bulk_modulus_2d", "dK_d", "", &ModuliChange::bulk_modulus_2d},
-                                     ModulusColumn{"shear_modulus", "dG_d", "", &ModuliChange::shear_modulus},
-                                     ModulusColumn{"young_modulus", "dE_d", "", &ModuliChange::young_modulus},
-                                     ModulusColumn{"poisson_ratio", "dnu_d", "_per_Pa", &ModuliChange::poisson_ratio}};
+constexpr std::array modulus_columns{ModulusColumn{"K", "", "_per_m2", &ModuliChange::bulk_modulus_2d},
+                                     ModulusColumn{"G", "", "_per_m2", &ModuliChange::shear_modulus},
+                                     ModulusColumn{"E", "", "_per_m2", &ModuliChange::young_modulus},
+                                     ModulusColumn{"nu", "_per_Pa", "_per_N", &ModuliChange::poisson_ratio}};
 
-/// The changes of the moduli where all springs of a kind grow by a common small factor, per this factor.
+/// The changes of the moduli per relative change of all springs of a kind.
 ModuliChange change_by_all(const SpringKind& kind, const ContactSprings& springs, const Matrix3& stiffness,
                            const SpringSensitivities& found) {
   Matrix3 sum{};
@@ -74,8 +73,9 @@ Results spring_effects(const Problem& problem, const Matrix3& stiffness, const S
   of_kinds.set("scatter", rows.back());
   Results out;
   out.block(
-         "\nchanges (plane stress) over that of all springs of a kind by a common factor; standard deviations over "
-         "that of\nfactors which scatter independently from contact to contact, to first order\n")
+         "\nchanges of the moduli (plane stress) per relative change of all springs of a kind; standard deviations "
+         "per\n"
+         "coefficient of variation of springs that scatter independently from contact to contact, to first order\n")
       .table("", rows);
   return out.set("sensitivities", of_kinds);
 }
@@ -97,10 +97,9 @@ Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const 
   });
   each_kind([&](const SpringKind& kind, const std::vector<Matrix3>& derivatives) {
     for (const ModulusColumn& modulus : modulus_columns) {
-      const bool bending = kind.derivative == &SpringSensitivities::by_kM;
-      const std::string unit = !bending ? modulus.per_spring : *modulus.per_spring == '\0' ? "_per_m2" : "_per_N";
-      table.add(fmt::format("{}{}{}", modulus.column, kind.name, unit), derivatives,
-                [&](const Matrix3& change) { return change_of_moduli(stiffness, change).*modulus.value; });
+      const bool moment = kind.derivative == &SpringSensitivities::by_kM;
+      table.add(fmt::format("d{}_d{}{}", modulus.name, kind.name, moment ? modulus.by_moment : modulus.by_stiffness),
+                derivatives, [&](const Matrix3& change) { return change_of_moduli(stiffness, change).*modulus.value; });
     }
   });
   return table;
