@@ -329,7 +329,7 @@ TEST_CASE("rolling_and_cohesion_are_refused_where_nothing_carries_them") {
     check_refused([&] { check(scene, options); }, {words});
   };
   const auto rolls = [](PairProperties& pair, GrainOptions&) { pair.rolling_friction = pair.rolling_ratio = 0.3; };
-  for (const std::size_t map : {4, 5, 6}) refuses("linear_dashpot", all_steppings[map], rolls);
+  for (const Stepping& without_force : steppings_by_force(false)) refuses("linear_dashpot", without_force, rolls);
   refuses("without a rolling spring", all_steppings[0], [](PairProperties& p, auto&) { p.rolling_friction = 0.3; });
   refuses("without rolling friction", all_steppings[0], [](PairProperties& p, auto&) { p.rolling_damping = 0.3; });
   refuses("without its range", all_steppings[0], [](PairProperties& p, auto&) { p.cohesion = 0.3; });

@@ -22,8 +22,8 @@
 
 namespace equidem::test {
 
-constexpr std::array<NormalLaw, 5> all_laws{NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot,
-                                            NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow};
+constexpr std::array all_laws{NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
+                              NormalLaw::energy_map, NormalLaw::exact_flow};
 using GrainIntegrator = GrainOptions::Integrator;
 
 /// A law and a way to step that go together.
@@ -41,10 +41,17 @@ inline const std::vector<Stepping> all_steppings{{NormalLaw::linear_dashpot, Gra
                                                  {NormalLaw::five_case_map, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
-/// Laws that give forces, with both integrators: of shapes, cells and vectors.
-inline const std::vector<Stepping> force_steppings(all_steppings.begin(), all_steppings.begin() + 4);
+/// Those of laws that give forces, or of the others.
+inline std::vector<Stepping> steppings_by_force(bool force) {
+  std::vector<Stepping> found;
+  for (const Stepping& stepping : all_steppings)
+    if (gives_force(stepping.law) == force) found.push_back(stepping);
+  return found;
+}
+/// Of shapes, cells and vectors.
+inline const std::vector<Stepping> force_steppings = steppings_by_force(true);
 /// Of bonds that break.
-inline const std::vector<Stepping> spring_bond_steppings(all_steppings.begin(), all_steppings.begin() + 3);
+inline const std::vector<Stepping> spring_bond_steppings(force_steppings.begin(), force_steppings.begin() + 3);
 /// Of walls that follow a force.
 inline const std::vector<Stepping> servo_steppings{all_steppings[0], all_steppings[1], all_steppings[2],
                                                    all_steppings[6]};

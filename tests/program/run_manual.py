@@ -15,7 +15,11 @@ sys.path.insert(0, str(SOURCE / "cmake" / "debian"))
 
 import changelog  # noqa: E402
 
-VERBS = ("solve", "homogenize", "calibrate", "stability", "pack", "run", "quasistatic", "export", "sweep", "study")
+sys.path.insert(0, str(SOURCE / "docs" / "site"))
+
+import generate  # noqa: E402
+
+VERBS = tuple(name for name, _ in generate.verbs_of(PROGRAM))
 PAGES = ("", *VERBS, "case", "result", "engines")
 
 
@@ -80,7 +84,7 @@ class Completion(ProgramTest):
         self.assertNotIn("--accuracy", self.completed("pack", "--"))
         self.assertEqual(self.completed("solve", "--set", "springs.kT"), ["springs.kT="])
         self.assertEqual(self.completed("sweep", "--key", "springs.kT"), ["springs.kT"])
-        self.assertEqual(self.completed("solve", "--set", "assembly.kind", "=", "h"), ["hexagonal"])
+        self.assertIn("hexagonal", self.completed("solve", "--set", "assembly.kind", "=", "h"))
         self.assertIn("load.0.force=", self.completed("solve", "--set", "load.0."))
         self.assertEqual(self.completed("sweep", "--verb", "ho"), ["homogenize"])
         self.assertEqual(self.completed("solve", "compl"), ["completion"])  # a file

@@ -70,7 +70,7 @@ def add(source, folder, heading, recipe):
     text = open(os.path.join(source, "CONTRIBUTING.md"), encoding="utf-8").read()
     for name in (os.path.dirname(path), recipe["list"]):
         assert name in paragraph_of(text, heading), f"the recipe '{heading}' does not name {name}"
-    assert not os.path.exists(os.path.join(source, path)), path
+    assert not os.path.exists(os.path.join(source, path)), f"{path} exists: give the example of this recipe another name"
     text = open(os.path.join(source, recipe["list"]), encoding="utf-8").read()
     for pattern, replacement in recipe["lines"]:
         text, count = re.subn(pattern, replacement, text, count=1)
