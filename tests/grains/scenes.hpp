@@ -22,8 +22,8 @@
 
 namespace equidem::test {
 
-constexpr std::array all_laws{NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
-                              NormalLaw::energy_map, NormalLaw::exact_flow};
+inline constexpr std::array all_laws{NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot, NormalLaw::five_case_map,
+                                     NormalLaw::energy_map, NormalLaw::exact_flow};
 using GrainIntegrator = GrainOptions::Integrator;
 
 /// A law and a way to step that go together.
