@@ -48,7 +48,7 @@ inline std::vector<Stepping> steppings_by_force(bool force) {
     if (gives_force(stepping.law) == force) found.push_back(stepping);
   return found;
 }
-/// Of shapes, cells and vectors.
+/// Shapes, cells and vectors take these.
 inline const std::vector<Stepping> force_steppings = steppings_by_force(true);
 /// Of bonds that break.
 inline const std::vector<Stepping> spring_bond_steppings(force_steppings.begin(), force_steppings.begin() + 3);

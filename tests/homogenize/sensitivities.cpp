@@ -106,7 +106,7 @@ TEST_CASE("a_small_change_of_a_spring_changes_the_stiffness_by_its_derivative") 
         if (bend) bending[c] += kM;
         return ContactSprings(all).with_bending(bending);
       };
-      const double step = 1e-3 * springs[c].kT, radius = assembly.mean_radius();
+      const double step = 1e-3 * springs[c].kT;
       const Matrix3 by_kN = difference(step, [&](double change) { return with(change, 0, 0); });
       const Matrix3 by_kT = difference(step, [&](double change) { return with(0, change, 0); });
       // differences of numbers of the size of C, and the third derivative
@@ -120,7 +120,6 @@ TEST_CASE("a_small_change_of_a_spring_changes_the_stiffness_by_its_derivative") 
       const double bending_step = 1e-3 * springs.bending(c);
       close(difference(bending_step, [&](double change) { return with(0, 0, change); }), found.by_kM[c],
             step / bending_step);
-      CHECK(radius > 0);
     }
   }
 }

@@ -130,7 +130,6 @@ kT = 0.5
                 if rotation == "restrained" and one["kT_over_kN"] != 0:
                     self.check_close(result["gradient_stiffness"], one["C4"], 1e-9)
 
-
     def test_springs_share_the_moduli_among_them(self):
         out = self.folder / "out"
         result = self.homogenize(CELL, "--sensitivities", "--set", "springs.bond_width=0.5", "--out", out)

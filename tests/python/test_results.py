@@ -54,6 +54,8 @@ def test_the_stiffness_is_the_sum_of_springs_times_its_derivatives():
     cell = eq.delaunay(discs=60, radius=5e-3, seed=2, periodic=True)
     result = eq.homogenize(cell, SPRINGS, sensitivities=True)
     assert result.dC_dkN.shape == (len(cell.contacts), 3, 3) and result.units["dC_dkN"] == ""
+    assert {unit for name, unit in result.units.items() if name.startswith("sensitivities")} == {""}
+    assert "all kT" in result.labels["sensitivities.kT.young_modulus"]
     assert not result.dC_dkN.flags.writeable and "dC_dkM" not in result
     whole = 1e9 * result.dC_dkN.sum(axis=0) + 0.5e9 * result.dC_dkT.sum(axis=0)
     assert np.allclose(whole, result.stiffness, rtol=0, atol=1e-9 * np.abs(whole).max())

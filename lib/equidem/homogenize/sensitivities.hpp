@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What each spring does to the effective stiffness: exact derivatives, from the strain fields of the homogenization.
+/// The strain fields of a homogenization give the exact derivatives of the effective stiffness by each spring.
 ///
 /// The energy of a pair of mean strains a, b is stationary in the fluctuations, so that a spring counts by its own
 /// stretch alone (Hellmann-Feynman). With the stretches n, the slips s and the relative rotations w of contact c under

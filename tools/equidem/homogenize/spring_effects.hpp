@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What springs do to the moduli: report, JSON, table and arrays of `equidem homogenize`.
+/// `equidem homogenize --sensitivities` reports what springs do to the moduli in report, JSON, table, pictures and
+/// arrays.
 #pragma once
 
 #include <memory>
@@ -18,7 +19,7 @@ namespace equidem {
 
 inline constexpr const char* sensitivities_name = "sensitivities.csv";
 
-/// What --sensitivities asks for.
+/// Returns the part of the report and of the JSON.
 Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
 
 /// One row per contact: contact, i, j, kN_Pa, kT_Pa, [kM_N,] and of each spring the derivatives of K, G, E and nu

@@ -203,10 +203,7 @@ bool is_near_wall(const GrainSystem& system, std::size_t body, const GrainPart& 
 
 void find_walls_of_block(GrainSystem& system, std::size_t block) {
   NewList walls(system, system.contacts.of(Between::walls).blocks[block], block);
-  const auto see = [&](std::int32_t i, std::size_t w) {
-    const PairKey pair{i, {static_cast<std::int32_t>(w)}};
-    if (!walls.keep_contact(pair)) walls.leave(pair, true);
-  };
+  const auto see = [&](std::int32_t i, std::size_t w) { walls.take({i, {static_cast<std::int32_t>(w)}}); };
   const std::size_t count = system.scene.walls.size();
   const double farthest = system.contacts.skin.margin + system.range;
   std::vector<char> near(count);
