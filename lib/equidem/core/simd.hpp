@@ -27,6 +27,9 @@
 
 namespace equidem::simd {
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions only
+
 // Numbers in one vector of the processor.
 using One = double __attribute__((vector_size(8)));
 using Two = double __attribute__((vector_size(16)));
@@ -448,6 +451,8 @@ template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes small_shortening(const Lanes& z) {
   return (0.5 - z * 0x1.7ffffffffc107p-2) + z * z * (0x1.3ffffec520523p-2 - z * 0x1.17e082791cc03p-2);
 }
+
+#pragma GCC diagnostic pop
 
 }  // namespace equidem::simd
 
