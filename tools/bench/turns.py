@@ -56,15 +56,17 @@ def block(breaking):
     return make
 
 
-def sheared(side):
-    scene, _ = falling(0, False, side, "velocity_verlet")
-    width = side * 1.05
-    for body, place in zip(scene["grain"], lattice(side, 1.05)):
-        body["position"] = place
-    del scene["wall"]
-    del scene["run"]["gravity"]
-    scene["cell"] = {"periodic": "xy", "width": width, "height": width * math.sqrt(3) / 2, "motion": {"xx": -0.02, "yy": -0.02, "xy": 0.2}}
-    return scene, 500
+def sheared(spacing):
+    def make(side):
+        scene, _ = falling(0, False, side, "velocity_verlet")
+        width = side * spacing
+        for body, place in zip(scene["grain"], lattice(side, spacing)):
+            body["position"] = place
+        del scene["wall"]
+        del scene["run"]["gravity"]
+        scene["cell"] = {"periodic": "xy", "width": width, "height": width * math.sqrt(3) / 2, "motion": {"xx": -0.02, "yy": -0.02, "xy": 0.2}}
+        return scene, 500
+    return make
 
 
 EULER, VERLET = "semi_implicit_euler", "velocity_verlet"
@@ -72,14 +74,15 @@ SCENES = {"discs, Euler": box(0, EULER), "discs, Verlet": box(0, VERLET), "discs
           "ellipses of aspect 2, Euler": box(2, EULER), "ellipses of aspect 2, Verlet": box(2, VERLET), "ellipses of aspect 20, Euler": box(20, EULER),
           "clumps of two discs, Euler": box(-1, EULER), "clumps of two discs, Verlet": box(-1, VERLET), "pairs tied by dashpots, Euler": box(-1, EULER, True),
           "pairs tied by dashpots, Verlet": box(-1, VERLET, True), "shaken box, Verlet": shaken, "bonded block, Verlet": block(False),
-          "bonded block that breaks, Verlet": block(True), "sheared cell, Verlet": sheared}
+          "bonded block that breaks, Verlet": block(True), "sheared cell, Verlet": sheared(1.05), "sheared cell full of contacts, Verlet": sheared(0.998)}
 
 
 class Builds:
     """A build as a process of its own, which makes a scene and then steps it as often as it is asked to."""
 
     def __init__(self, build, request):
-        command = [sys.executable, __file__, "--worker", build, build, "--side", str(request.side), "--steps", str(request.steps)]
+        command = [sys.executable, __file__, "--worker", build, build, "--side", str(request.side), "--steps", str(request.steps),
+                   "--threads", str(request.threads)]
         self.process = subprocess.Popen(list(map(str, command)), stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def __call__(self, word):
@@ -94,7 +97,8 @@ class Builds:
 def work(request):
     eq = module_of(request.old)
     eq.show_progress(False)
-    eq.set_threads(1)
+    eq.set_threads(request.threads)
+    clock = time.thread_time if request.threads == 1 else time.perf_counter
     simulation = None
     for line in sys.stdin:
         word = line.strip()
@@ -102,10 +106,10 @@ def work(request):
             tables, settle = SCENES[word](request.side)
             simulation = eq.simulation(**tables)
             simulation.advance(settle)
-        begin = time.thread_time()
+        begin = clock()
         if word == "step":
             simulation.advance(request.steps)
-        print(time.thread_time() - begin, flush=True)
+        print(clock() - begin, flush=True)
 
 
 def main():
@@ -115,6 +119,7 @@ def main():
     parser.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--side", type=int, default=32, help="bodies in a row, and rows")
     parser.add_argument("--steps", type=int, default=500, help="of a turn")
+    parser.add_argument("--threads", type=int, default=1, help="one: times of the processor; more: times of the clock")
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--scenes", default="", help="part of their names")
     parser.add_argument("--markdown", type=Path, help="file of the page")
@@ -136,8 +141,9 @@ def main():
                      f"{statistics.median(times[0]) / statistics.median(times[1]):.2f}"])
         print(*rows[-1], sep=" | ", flush=True)
     command = " ".join(["tools/bench/turns.py", *(word for word in sys.argv[1:])])
+    clock = "One thread, processor time" if request.threads == 1 else f"{request.threads} threads, time of the clock"
     page = (f"# Two builds in turns\n\n    {command}\n\n{request.side**2} bodies of equal area, linear spring and dashpot, friction with a tangential "
-            "spring. One thread, processor time of a body and step\nin ns, medians (smallest .. largest) of rounds in which both take turns.\n\n" +
+            f"spring. {clock} of a body and step\nin ns, medians (smallest .. largest) of rounds in which both take turns.\n\n" +
             table(["scene", "old", "new", "old/new"], rows))
     if request.markdown:
         request.markdown.write_text(page, encoding="utf-8")
