@@ -25,10 +25,12 @@ constexpr double negligible = 1e-12;
 
 Effects effects_of(const Ranks& ranks, const Part& part, const ContactSprings& springs, Rotation rotation) {
   const bool tangential = ranks.any(springs.any_tangential());
-  const bool off_lines = ranks.any(!on_lines_of_centres(part.assembly));
+  const bool resisted = ranks.any(resists_rotation_without_tangential(part.assembly, springs));
   ContactSprings alike(SpringConstants{1, tangential ? 1.0 : 0.0});
   if (ranks.any(springs.bends())) alike = alike.with_bending({1});
-  return derive_effects(alike, rotation, off_lines);
+  Effects effects = derive_effects(alike, rotation, resisted);
+  effects.prestress = ranks.any(springs.prestressed());
+  return effects;
 }
 
 Network::Network(const Ranks& all, const Part& own, const Whole& sums, const ContactSprings& of_part,
@@ -41,7 +43,7 @@ Network::Network(const Ranks& all, const Part& own, const Whole& sums, const Con
       effects(of_whole),
       halo(all, own),
       graph(own.assembly),
-      any_negative(all.any(of_part.any_negative())),
+      may_be_indefinite(all.any(of_part.may_be_indefinite())),
       stiffest(all.largest(of_part.largest())) {
   unknowns.per_disc = effects.unknowns_per_disc();
   unknowns.rotation_scale = whole.mean_radius;

@@ -52,7 +52,7 @@ struct Network {
   Halo halo;
   ContactGraph graph;
   DegreesOfFreedom unknowns;
-  bool any_negative;            ///< spring of any rank
+  bool may_be_indefinite;       ///< by a negative spring or by prestress, on any rank
   double stiffest;              ///< Pa: the largest spring of all ranks
   std::int64_t free_count = 0;  ///< unknowns of all ranks
 

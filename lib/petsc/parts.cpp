@@ -345,6 +345,8 @@ ScatteredPart scattered_part(const Ranks& ranks, const Assembly* given, const Co
   assembly.contacts = of_contacts(whole.contacts);
   assembly.facet_lengths = of_contacts(whole.facet_lengths);
   assembly.contact_arms = of_contacts(whole.contact_arms);
+  assembly.contact_normal_force = of_contacts(whole.contact_normal_force);
+  assembly.contact_tangential_force = of_contacts(whole.contact_tangential_force);
   std::unordered_map<std::int64_t, std::int32_t> local;
   for (std::size_t d = 0; d < assembly.size(); ++d) local[part.names[d]] = static_cast<std::int32_t>(d);
   for (Contact& contact : assembly.contacts) contact.i = local.at(contact.i), contact.j = local.at(contact.j);
@@ -367,11 +369,14 @@ ScatteredPart scattered_part(const Ranks& ranks, const Assembly* given, const Co
   assembly.groups = own_groups(groups, part);
   std::vector<SpringConstants> of_whole;
   std::vector<double> bending;
+  std::vector<ContactPrestress> prestress;
   for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
     of_whole.push_back((*springs)[c]);
+    if (springs->prestressed()) prestress.push_back(*springs->prestress(c));
     if (springs->bends()) bending.push_back(springs->bending(c));
   }
-  result.springs = ContactSprings(of_contacts(of_whole)).with_bending(of_contacts(bending));
+  result.springs =
+      ContactSprings(of_contacts(of_whole)).with_bending(of_contacts(bending)).with_prestress(of_contacts(prestress));
   return result;
 }
 

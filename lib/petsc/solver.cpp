@@ -196,7 +196,7 @@ void PetscSolver::assemble() {
   matrix_ = copy;
   set_block_size_of_own_rows(matrix_, b);
   check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
-  if (!n.any_negative) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  if (!n.may_be_indefinite) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
   check(MatCreateVecs(matrix_, &solution_, &load_));
 }
 
@@ -232,7 +232,8 @@ void PetscSolver::set_near_null_space() {
 
 void PetscSolver::set_up(SolverMethod method) {
   const Network& n = network_;
-  const bool eliminates = method == SolverMethod::automatic ? n.any_negative : !entry_of(method).back_end.iterative;
+  const bool eliminates =
+      method == SolverMethod::automatic ? n.may_be_indefinite : !entry_of(method).back_end.iterative;
   check(KSPCreate(n.ranks.communicator(), &solver_));
   check(KSPSetOptionsPrefix(solver_, prefix));
   check(KSPSetOperators(solver_, matrix_, matrix_));
@@ -282,14 +283,15 @@ std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) 
                        "the matrix is singular: the assembly has a mechanism", "'equidem solve' names it");
   }
   if (reason < 0) {
-    computation_failed(fmt::format("the solver of PETSc did not converge: {} after {}", KSPConvergedReasons[reason],
-                                   counted(iterations, "iteration")),
-                       n.any_negative ? "kT < 0: the matrix is not positive definite, and conjugate gradients need that"
-                                      : "the assembly may have a mechanism, or be close to one",
-                       n.any_negative
-                           ? "Take MUMPS: --set solver.method=auto, without -equidem_ksp_type and -equidem_pc_type"
-                           : "'equidem solve' names a mechanism; -equidem_ksp_max_it N allows more iterations, "
-                             "--set solver.method=multifrontal takes MUMPS");
+    computation_failed(
+        fmt::format("the solver of PETSc did not converge: {} after {}", KSPConvergedReasons[reason],
+                    counted(iterations, "iteration")),
+        n.may_be_indefinite
+            ? "kT < 0, or forces at rest: the matrix need not be positive definite, and conjugate gradients need that"
+            : "the assembly may have a mechanism, or be close to one",
+        n.may_be_indefinite ? "Take MUMPS: --set solver.method=auto, without -equidem_ksp_type and -equidem_pc_type"
+                            : "'equidem solve' names a mechanism; -equidem_ksp_max_it N allows more iterations, "
+                              "--set solver.method=multifrontal takes MUMPS");
   }
   const double* found = nullptr;
   check(VecGetArrayRead(solution_, &found));
@@ -383,8 +385,8 @@ Refined refine(const Network& network, PetscSolver& solver, std::span<const doub
     if (pass > 0 && result.residual > 0.5 * last && result.residual > 1e-12 * result.scale) {
       computation_failed(
           fmt::format("the residual stays at {:.1e} of the forces", result.residual / result.scale),
-          network.any_negative
-              ? "kT < 0: an iteration or preconditioner needs a positive definite matrix; MUMPS meets one "
+          network.may_be_indefinite
+              ? "kT < 0, or forces at rest: an iteration needs a positive definite matrix; MUMPS meets one "
                 "that is singular or nearly so"
               : "the stiffness matrix is singular or nearly so: the assembly may have a mechanism",
           "'equidem solve' names a mechanism; --set solver.method=multifrontal, without -equidem_ksp_type "

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
@@ -15,6 +16,7 @@
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/statics/loads.hpp"
+#include "equidem/statics/motion_description.hpp"
 
 namespace equidem::petsc {
 namespace {
@@ -59,21 +61,31 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
     sums[1] += moment;
     state.reactions.push_back({static_cast<std::int32_t>(d), {reaction(0), reaction(1)}, moment});
   }
+  const bool prestressed = network.springs.prestressed();
+  if (prestressed) sums[0] = elastic_energy(assembly, network.springs, state.motions);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const ContactFrame frame = frame_of(assembly, c);
     const ContactForce& force = state.contact_forces[c];
     const SpringConstants springs = network.springs[c];
-    sums[0] += linear_spring_energy_of(springs, force);
+    double stretch = springs.kN != 0 ? force.normal / springs.kN : 0;
+    if (prestressed) {
+      const ContactMotion motion = motion_of(network.local(), refined.motion, {}, c);
+      ContactResponse<double> response;
+      add_prestress(*network.springs.prestress(c), motion.deformation, motion.theta_i, motion.theta_j, response);
+      if (network.effects.restrained) sums[1] -= response.moment_i + response.moment_j;
+      stretch = motion.deformation.normal;
+    } else {
+      sums[0] += linear_spring_energy_of(springs, force);
+    }
     const double kM = network.springs.bending(c);
-    if (!state.bending_moments.empty() && kM > 0)
+    if (!prestressed && !state.bending_moments.empty() && kM > 0)
       sums[0] += 0.5 * state.bending_moments[c] * state.bending_moments[c] / kM;
     if (network.effects.restrained) sums[1] -= moment_on_i(frame, force) + moment_on_j(frame, force);
     const Tensor2 work = force_by_branch(frame, force);
     sums[2] += work.xx, sums[3] += work.xy, sums[4] += work.yx, sums[5] += work.yy, sums[6] += frobenius_norm(work);
     const Contact& contact = assembly.contacts[c];
     const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
-    if (springs.kN != 0)
-      result.largest_deformation = std::max(result.largest_deformation, std::abs(force.normal / springs.kN) / radii);
+    result.largest_deformation = std::max(result.largest_deformation, std::abs(stretch) / radii);
   }
   ranks.sum(sums);
   result.largest_deformation = ranks.largest(result.largest_deformation);
@@ -104,7 +116,7 @@ PartEquilibrium solve_loads(const Network& network, PetscSolver& solver, const L
   state.solver = solver.name();
   state.factor_bytes = solver.grid_bytes();
   state.unknowns = network.free_count;
-  if (network.any_negative) state.negative_pivots = state.unstable_modes = std::nullopt;
+  if (network.may_be_indefinite) state.negative_pivots = state.unstable_modes = std::nullopt;
   return result;
 }
 
@@ -203,36 +215,48 @@ namespace {
 /// Sums over the contacts of all ranks: energies of pairs of strains, and stresses of each case times the area.
 struct Sums {
   PairEnergies energies;
-  Matrix3 bending{};
+  Matrix3 bending{}, prestress{};
   std::vector<Tensor2> stresses;
+  Tensor2 at_rest;  ///< likewise, of the forces at rest
 };
 
 Sums sum_up(const Network& network, std::span<const Refined> cases) {
   const Assembly& assembly = network.assembly;
   const SpringNetwork local = network.local();
-  constexpr std::size_t first_stress = pair_sums + pair_sums / 2;  // after the energies of the three springs
-  auto total = contact_sums<first_stress + 4 * strain_cases>(assembly.contacts.size(), [&](std::size_t c, auto& sums) {
+  constexpr std::size_t triangle = pair_sums / 2, first_prestress = pair_sums + triangle;
+  constexpr std::size_t first_stress = first_prestress + triangle, at_rest = first_stress + 4 * strain_cases;
+  const auto add_tensor = [](const Tensor2& t, double* sums) {
+    sums[0] += t.xx, sums[1] += t.xy, sums[2] += t.yx, sums[3] += t.yy;
+  };
+  auto total = contact_sums<at_rest + 4>(assembly.contacts.size(), [&](std::size_t c, auto& sums) {
     const ContactFrame frame = frame_of(assembly, c);
     std::array<ContactDeformation, strain_cases> deformations;
     std::array<double, strain_cases> turns{};
+    std::array<ContactMotion, strain_cases> motions;
     for (std::size_t k = 0; k < cases.size(); ++k) {
-      const ContactMotion motion = motion_of(local, cases[k].motion, unit_gradients[k], c);
-      deformations[k] = motion.deformation;
-      turns[k] = motion.theta_j - motion.theta_i;
-      const Tensor2 work = force_by_branch(frame, linear_spring_force(network.springs[c], deformations[k]));
-      double* const stress = &sums[first_stress + 4 * k];
-      stress[0] += work.xx, stress[1] += work.xy, stress[2] += work.yx, stress[3] += work.yy;
+      motions[k] = motion_of(local, cases[k].motion, unit_gradients[k], c);
+      deformations[k] = motions[k].deformation;
+      turns[k] = motions[k].theta_j - motions[k].theta_i;
+      add_tensor(force_by_branch(frame, force_of(network.springs, c, motions[k])), &sums[first_stress + 4 * k]);
+    }
+    if (const ContactPrestress* const prestress = network.springs.prestress(c)) {
+      add_prestress_energies(*prestress, motions.data(), sums.data() + first_prestress);
+      add_tensor(force_by_branch(frame, force_at_rest(assembly, c)), &sums[at_rest]);
     }
     add_pair_energies(network.springs[c], deformations.data(), sums.data());
     const double kM = network.springs.bending(c);
     add_triangle(sums.data() + pair_sums, [&](std::size_t a, std::size_t b) { return kM * turns[a] * turns[b]; });
   });
   network.ranks.sum(total);
-  Sums sums{.energies = pair_energies(total.data()), .bending = symmetric(total.data() + pair_sums), .stresses = {}};
-  for (std::size_t k = 0; k < cases.size(); ++k) {
-    const double* stress = &total[first_stress + 4 * k];
-    sums.stresses.push_back({stress[0], stress[1], stress[2], stress[3]});
-  }
+  const auto tensor = [&](std::size_t first) {
+    return Tensor2{total[first], total[first + 1], total[first + 2], total[first + 3]};
+  };
+  Sums sums{.energies = pair_energies(total.data()),
+            .bending = symmetric(total.data() + pair_sums),
+            .prestress = symmetric(total.data() + first_prestress),
+            .stresses = {},
+            .at_rest = tensor(at_rest)};
+  for (std::size_t k = 0; k < cases.size(); ++k) sums.stresses.push_back(tensor(first_stress + 4 * k));
   return sums;
 }
 
@@ -281,15 +305,21 @@ EffectiveStiffness cell_stiffness(const Network& network, PetscSolver& solver) {
     result.bending_part = (1 / result.area) * sums.bending;
     result.stiffness = result.stiffness + result.bending_part;
   }
+  if (result.effects.prestress) {
+    result.prestress_part = (1 / result.area) * sums.prestress;
+    result.stiffness = result.stiffness + result.prestress_part;
+  }
   constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   result.error_bound = (worst * worst + rounding) * largest_entry(result.stiffness);
   result.hill_mandel = power_difference(sums.stresses, result.stiffness);
   keep_gradient_stiffness(sums.stresses, result);
+  result.cauchy = result.stiffness;
+  if (result.effects.prestress) add_stress_at_rest((1 / result.area) * sums.at_rest, result);
   for (std::size_t k = 0; k < 3; ++k)
     result.fluctuations.push_back(disc_motions(network.unknowns, cases[k].motion.high));
   result.times.add("stiffness", watch.lap());
   result.unknowns = network.free_count;
-  if (network.any_negative) result.negative_pivots = result.unstable_modes = std::nullopt;
+  if (network.may_be_indefinite) result.negative_pivots = result.unstable_modes = std::nullopt;
   result.self_stresses = std::nullopt;
   result.solver = solver.name();
   result.factor_bytes = solver.grid_bytes();

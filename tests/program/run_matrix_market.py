@@ -71,8 +71,7 @@ class MatrixMarket(ProgramTest):
         self.check_case(CASES / "cantilever.toml", loads=("_weight", "_tip"))
         self.check_case(CASES / "cantilever.toml", "--set", "support.0.uy=1e-4", loads=("_weight", "_tip"))
 
-    def test_a_periodic_cell_has_three_right_hand_sides(self):
-        case = (CASES / "random_cell.toml", "--set", "assembly.discs=200")
+    def check_cell(self, *case):
         folder, found = self.exported(*case)
         self.check_done(equidem("homogenize", *case, "--out", self.folder / "ours", "--overwrite"))
         written = parse_json((self.folder / "ours" / "result.json").read_text())["strain_of_states"]
@@ -86,6 +85,21 @@ class MatrixMarket(ProgramTest):
                         float(row["uy_m"]) / written - gradient[1][0] * x - gradient[1][1] * y)
             self.check_motions(theirs, ours, beside)
         self.assertEqual(scipy.io.mmread(folder / "right_hand_sides.mtx").shape[1], 3)
+
+    def test_a_periodic_cell_has_three_right_hand_sides(self):
+        self.check_cell(CASES / "random_cell.toml", "--set", "assembly.discs=200")
+
+    def test_forces_at_rest_are_in_the_matrix(self):
+        packed = self.folder / "packed"
+        self.check_done(equidem("pack", CASES / "pack_ellipses.toml", "--set", "packing.sides=periodic", "--set",
+                                "packing.grains=60", "--out", packed))
+        case = self.folder / "cell.toml"
+        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "{packed / "assembly.json"}"\n')
+        matrices = []
+        for counts in ("on", "off"):
+            self.check_cell(case, "--set", f"effects.prestress={counts}")
+            matrices.append(scipy.io.mmread(self.folder / "equations" / "stiffness.mtx").toarray())
+        self.assertGreater(abs(matrices[0] - matrices[1]).max(), 1e-4 * abs(matrices[1]).max())
 
     def test_matrices_say_what_they_are_and_are_symmetric_and_definite(self):
         folder, _ = self.exported(TENSION)

@@ -74,8 +74,8 @@ class Prestress(ProgramTest):
         self.refused(["curvatures"], "homogenize", self.case_of("unknown.json"), *on)
         case = self.case_of(packed / "assembly.json")
         self.refused(["quasistatic takes no prestress"], "quasistatic", case, *on)
-        matrices = ("export", case, "--to", "matrix-market", "--out", self.folder / "matrices")
-        self.refused(["forces at rest", "matrix-market"], *matrices)
+        self.refused(["export --to lammps takes no prestress"], "export", case, *on, "--to", "lammps", "--out",
+                     self.folder / "lammps")
 
     def test_bodies_that_fell_carry_forces_that_balance_their_weight(self):
         packed = self.folder / "fallen"

@@ -609,20 +609,14 @@ bool prestress_counts(const Problem& problem) {
   return choice && choice->springs.prestressed();
 }
 
-std::vector<ContactForce> forces_in_total(const Problem& problem, std::vector<ContactForce> changes) {
-  for (std::size_t c = 0; problem.springs.springs.prestressed() && c < changes.size(); ++c) {
-    const ContactForce at_rest = force_at_rest(problem.assembly, c);
+std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
+                                          std::vector<ContactForce> changes) {
+  for (std::size_t c = 0; springs.prestressed() && c < changes.size(); ++c) {
+    const ContactForce at_rest = force_at_rest(assembly, c);
     changes[c].normal += at_rest.normal;
     changes[c].tangential += at_rest.tangential;
   }
   return changes;
-}
-
-void refuse_prestress(const Problem& problem, std::string_view taker) {
-  if (!prestress_counts(problem)) return;
-  bad_input(fmt::format("the forces at rest of the assembly count, and {} takes none", taker),
-            "its stiffness would be that of the springs alone",
-            "Set effects.prestress = \"off\", or use solve, homogenize or stability");
 }
 
 Problem prestressed(Problem problem) {

@@ -204,11 +204,8 @@ Problem prestressed(Problem problem);
 bool prestress_counts(const Problem& problem);
 
 /// Forces of the contacts with those at rest, where these count. \param changes by the loads
-std::vector<ContactForce> forces_in_total(const Problem& problem, std::vector<ContactForce> changes);
-
-/// \param taker of the springs alone
-/// \throws Error (bad_input) where the forces at rest count
-void refuse_prestress(const Problem& problem, std::string_view taker);
+std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
+                                          std::vector<ContactForce> changes);
 
 /// Tells what was decided, or that the verb takes no such forces.
 void add_forces_at_rest(Results& results, const Problem& problem);

@@ -111,7 +111,7 @@ inline constexpr std::array verbs{
          declare_export,
          false,
          export_txt,
-         {.bending = true}},
+         {.prestress = true, .bending = true}},
     Verb{"sweep",
          "a verb over values of keys and seeds: one table, and curves",
          declare_sweep,

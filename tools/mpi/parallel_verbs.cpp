@@ -197,9 +197,9 @@ void scatter_problem(const Ranks& ranks, PartProblem& p, bool homogenize) {
   ranks.together([&] {
     if (!ranks.first()) return;
     Case resolved = p.problem.resolved;
-    whole.problem.emplace(homogenize ? problem_of(std::move(resolved)) : build_problem(std::move(resolved)));
+    whole.problem.emplace(
+        prestressed(homogenize ? problem_of(std::move(resolved)) : build_problem(std::move(resolved))));
     const Problem& problem = *whole.problem;
-    refuse_prestress(problem, "equidem-mpi");
     whole.effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
     p.of_problem = problem_results(problem, whole.effects);
     p.problem.tension = problem.tension;
@@ -271,7 +271,7 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
       bad_input("equidem-mpi has no --dry-run", "what it takes is planned by hand",
                 "See data/petsc.md, or leave it out");
     Case resolved = read_case(options);
-    check_taken(resolved, "equidem-mpi", {.bending = true});
+    check_taken(resolved, "equidem-mpi", {.prestress = true, .bending = true});
     made = std::make_unique<PartProblem>(std::move(resolved));
     check_case(made->problem.resolved, homogenize);
   });
@@ -334,9 +334,10 @@ bool cells_are_known(const petsc::Part& part) {
 /// NAME_discs_K.vtp and NAME_contacts_K.vtp of rank K, by rank 0 also NAME.vtm.
 /// \param motions per disc of the part
 void write_part_files(const CommonOptions& options, const std::string& name, const petsc::Ranks& ranks,
-                      const petsc::Part& part, std::span<const DiscMotion> motions,
+                      const petsc::Part& part, const ContactSprings& springs, std::span<const DiscMotion> motions,
                       std::span<const ContactForce> forces) {
-  const AssemblyState state{.assembly = part.assembly, .motions = motions, .contact_forces = forces};
+  const std::vector<ContactForce> total = forces_in_total(part.assembly, springs, {forces.begin(), forces.end()});
+  const AssemblyState state{.assembly = part.assembly, .motions = motions, .contact_forces = total};
   const std::span<const std::int64_t> numbers(part.names.data(), static_cast<std::size_t>(part.owned));
   write_vtk_piece(*options.out, name, ranks.rank(), state, numbers, options.overwrite);
   if (ranks.first()) write_vtk_index(*options.out, name, ranks.count(), options.overwrite);
@@ -439,7 +440,8 @@ void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
     times.add(solved.state.times);
     if (!options.out) continue;
     ranks.together([&] {
-      write_part_files(options, states[k], ranks, p.part, solved.state.motions, solved.state.contact_forces);
+      write_part_files(options, states[k], ranks, p.part, p.problem.springs.springs, solved.state.motions,
+                       solved.state.contact_forces);
     });
   }
   Results all = solve_results(p.problem, part_problem_results(ranks, p), results);
@@ -473,7 +475,7 @@ void write_strained(const petsc::Ranks& ranks, const CommonOptions& options, con
     for (std::size_t k = 0; k < states.size(); ++k) {
       std::vector<DiscMotion> motions = states[k].fluctuations;
       for (std::size_t d = 0; d < motions.size(); ++d) motions[d].u += states[k].gradient * p.part.assembly.centres[d];
-      write_part_files(options, strain_states[k], ranks, p.part, motions, states[k].forces);
+      write_part_files(options, strain_states[k], ranks, p.part, p.problem.springs.springs, motions, states[k].forces);
     }
   });
 }
@@ -494,7 +496,8 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
   result.discs_removed = p.removed;
   result.rattlers = p.rattlers;
   result.removed = p.left_out;
-  homogenized.beside.push_back({"voigt", voigt_of_all(ranks, p), {}});
+  // That of springs alone is no bound where forces at rest count.
+  if (!result.effects.prestress) homogenized.beside.push_back({"voigt", voigt_of_all(ranks, p), {}});
   times.add(result.times);
   Results all = homogenized_results(p.problem, part_problem_results(ranks, p), p.part.assembly.periodic(), homogenized,
                                     {}, relation_of_all(p));

@@ -53,17 +53,18 @@ Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool of
   return effects;
 }
 
+bool resists_rotation_without_tangential(const Assembly& assembly, const ContactSprings& springs) {
+  if (!on_lines_of_centres(assembly)) return true;
+  if (!springs.prestressed() || springs.any_tangential()) return false;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const ContactFrame frame = frame_of(assembly, c);
+    if (turns_i(*springs.prestress(c), frame) || turns_j(*springs.prestress(c), frame)) return true;
+  }
+  return false;
+}
+
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation) {
-  const auto turns = [&] {
-    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-      const ContactFrame frame = frame_of(assembly, c);
-      if (turns_i(*springs.prestress(c), frame) || turns_j(*springs.prestress(c), frame)) return true;
-    }
-    return false;
-  };
-  Effects effects =
-      derive_effects(springs, rotation,
-                     !on_lines_of_centres(assembly) || (springs.prestressed() && !springs.any_tangential() && turns()));
+  Effects effects = derive_effects(springs, rotation, resists_rotation_without_tangential(assembly, springs));
   effects.prestress = springs.prestressed();
   if (carries_forces(assembly)) {
     effects.entries.push_back({"prestress", effects.prestress,

@@ -50,7 +50,9 @@ struct Effects {
 /// name prestress where the assembly carries forces at rest, and bending springs where there are some: without
 /// rotations as unknowns they do nothing.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
-/// \param off_lines whether some contact lies off the lines of centres
+/// Whether normal springs, or forces at rest, resist rotations where no contact has a tangential spring.
+bool resists_rotation_without_tangential(const Assembly& assembly, const ContactSprings& springs);
+/// \param off_lines resists_rotation_without_tangential
 Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines = false);
 
 }  // namespace equidem

@@ -28,11 +28,8 @@ struct StrainSums {
 template <typename MotionOf>
 Matrix3 prestress_energies(const SampleSolver& solver, const MotionOf& motion_of) {
   const auto sums = contact_sums<6>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
-    const ContactMotion m[] = {motion_of(c, 0), motion_of(c, 1), motion_of(c, 2)};
-    add_triangle(total.data(), [&](std::size_t a, std::size_t b) {
-      return prestress_form(*solver.springs().prestress(c), m[a].deformation, m[a].theta_i, m[a].theta_j,
-                            m[b].deformation, m[b].theta_i, m[b].theta_j);
-    });
+    const ContactMotion motions[] = {motion_of(c, 0), motion_of(c, 1), motion_of(c, 2)};
+    add_prestress_energies(*solver.springs().prestress(c), motions, total.data());
   });
   return symmetric(sums.data());
 }
@@ -87,6 +84,14 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
 }
 
 }  // namespace
+
+void add_prestress_energies(const ContactPrestress& prestress, const ContactMotion* motions, double* sums) {
+  add_triangle(sums, [&](std::size_t a, std::size_t b) {
+    const ContactMotion &by_a = motions[a], &by_b = motions[b];
+    return prestress_form(prestress, by_a.deformation, by_a.theta_i, by_a.theta_j, by_b.deformation, by_b.theta_i,
+                          by_b.theta_j);
+  });
+}
 
 double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {
   double largest = 0;

@@ -41,33 +41,6 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
   }
 }
 
-/// A rotation h of the whole changes the nominal stress by h sigma_0, which is known without a solution where discs
-/// turn along.
-void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
-  result.stress_at_rest = at_rest;
-  const Matrix3 change = change_to_cauchy(at_rest);
-  result.cauchy = result.stiffness + change;
-  for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) {
-      result.prestress_part[a][b] += 0.5 * (change[a][b] + change[b][a]);
-      result.stiffness[a][b] = 0.5 * (result.cauchy[a][b] + result.cauchy[b][a]);
-    }
-  }
-  Matrix4& g = result.gradient_stiffness;
-  if (!result.effects.restrained) {
-    const Tensor2 turned = unit_gradients[3] * at_rest;
-    const double column[] = {turned.xx, turned.yy, turned.xy, turned.yx};
-    for (int r = 0; r < 4; ++r) g[r][2] -= 0.5 * column[r], g[r][3] += 0.5 * column[r];
-  }
-  const Tensor2 gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-  double asymmetric = 0;
-  for (int c = 0; c < 4; ++c) {
-    const Tensor2 kirchhoff = Tensor2{g[0][c], g[2][c], g[3][c], g[1][c]} + at_rest * transposed(gradients[c]);
-    asymmetric = std::max(asymmetric, std::abs(asymmetry(kirchhoff)));
-  }
-  result.stress_asymmetry = asymmetric / largest_entry(g);
-}
-
 /// Solve with springs of sizes near 1, so that no sum of squares leaves the range of a double.
 EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {
   const double unit = spring_unit(springs);
@@ -130,6 +103,31 @@ Tensor2 mean_stress_at_rest(const Assembly& assembly) {
   std::vector<ContactForce> at_rest(assembly.contacts.size());
   for (std::size_t c = 0; c < at_rest.size(); ++c) at_rest[c] = force_at_rest(assembly, c);
   return macroscopic_stress(assembly, at_rest);
+}
+
+void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
+  result.stress_at_rest = at_rest;
+  const Matrix3 change = change_to_cauchy(at_rest);
+  result.cauchy = result.stiffness + change;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      result.prestress_part[a][b] += 0.5 * (change[a][b] + change[b][a]);
+      result.stiffness[a][b] = 0.5 * (result.cauchy[a][b] + result.cauchy[b][a]);
+    }
+  }
+  Matrix4& g = result.gradient_stiffness;
+  if (!result.effects.restrained) {
+    const Tensor2 turned = unit_gradients[3] * at_rest;
+    const double column[] = {turned.xx, turned.yy, turned.xy, turned.yx};
+    for (int r = 0; r < 4; ++r) g[r][2] -= 0.5 * column[r], g[r][3] += 0.5 * column[r];
+  }
+  const Tensor2 gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  double asymmetric = 0;
+  for (int c = 0; c < 4; ++c) {
+    const Tensor2 kirchhoff = Tensor2{g[0][c], g[2][c], g[3][c], g[1][c]} + at_rest * transposed(gradients[c]);
+    asymmetric = std::max(asymmetric, std::abs(asymmetry(kirchhoff)));
+  }
+  result.stress_asymmetry = asymmetric / largest_entry(g);
 }
 
 Matrix3 change_to_cauchy(const Tensor2& at_rest) {

@@ -73,6 +73,9 @@ inline constexpr std::size_t pair_sums = 12;
 /// \param deformations by three load cases, m
 void add_pair_energies(const SpringConstants& k, const ContactDeformation* deformations, double* sums);
 PairEnergies pair_energies(const double* sums);
+/// Adds twice the energies of pairs of three load cases in the prestress of a contact, N, to the entries of a triangle.
+/// \param motions of the contact by three load cases
+void add_prestress_energies(const ContactPrestress& prestress, const ContactMotion* motions, double* sums);
 /// Twice the energies of pairs of the first three load cases in bending springs, sum kM (theta_j - theta_i)_a (theta_j
 /// - theta_i)_b, N.
 Matrix3 bending_energies(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
@@ -120,6 +123,9 @@ LinearSystem strain_system(const Assembly& assembly, const ContactSprings& sprin
 
 /// Pa, of the forces that contacts carry at rest.
 Tensor2 mean_stress_at_rest(const Assembly& assembly);
+/// From the stiffness of the nominal stress to that of the Cauchy stress. A rotation h of the whole changes the nominal
+/// stress by h sigma_0, which is known without a solution where discs turn along.
+void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result);
 
 /// From the change of the nominal stress P = J sigma F^-T by unit strains to that of the Cauchy stress: at the strain h
 /// d sigma = dP + sigma_0 h^T - tr(h) sigma_0.

@@ -89,7 +89,9 @@ Problem problem_to_export(Case resolved) {
 
 CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   constexpr double damping_to_rest = 0.2;
-  const auto problem = std::make_shared<const Problem>(problem_to_export(read_case(options)));
+  Case given = read_case(options);
+  check_taken(given, fmt::format("export --to {}", options.to), {.bending = true});
+  const auto problem = std::make_shared<const Problem>(problem_to_export(std::move(given)));
   const Case& resolved = problem->resolved;
   const std::optional<RunCase>& run = resolved.run;
   const Scene scene =
@@ -115,6 +117,7 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
     return run && run->duration ? std::min(step, *run->duration) : step;
   });
   made.notes = problem->left_out.sentences;
+  if (carries_forces(problem->assembly)) made.notes.emplace_back("the exported contacts start without forces at rest");
   if (!disc_density(resolved, problem->assembly))
     made.notes.push_back(
         fmt::format("density {} kg/m³ assumed: the state at rest does not depend on it", usual_density));
@@ -246,9 +249,8 @@ Exported export_to_matrix_market(const ExportOptions& options) {
               "Leave it out");
   Case resolved = read_case(options);
   const bool loaded = acts(resolved);
-  const auto problem =
-      std::make_shared<const Problem>(loaded ? build_problem(std::move(resolved)) : problem_of(std::move(resolved)));
-  refuse_prestress(*problem, "export --to matrix-market");
+  const auto problem = std::make_shared<const Problem>(
+      prestressed(loaded ? build_problem(std::move(resolved)) : problem_of(std::move(resolved))));
   Exported made{problem->times, {case_part([problem]() -> const Case& { return problem->resolved; })}};
   Stopwatch watch;
   const auto system = std::make_shared<const LinearSystem>(equations_of(*problem));

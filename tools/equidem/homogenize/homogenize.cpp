@@ -520,7 +520,7 @@ void write_states(const CommonOptions& options, const Problem& problem, const Ef
   const std::vector<StrainedState> states = strained_states(assembly, problem.springs.springs, result, written_strain);
   for (std::size_t k = 0; k < states.size(); ++k) {
     const auto& [gradient, fluctuations, changes, moments] = states[k];
-    const std::vector<ContactForce> forces = forces_in_total(problem, changes);
+    const std::vector<ContactForce> forces = forces_in_total(assembly, problem.springs.springs, changes);
     const auto& [suffix, label] = written_states[k];
     std::vector<DiscMotion> motions = fluctuations;
     for (std::size_t d = 0; d < motions.size(); ++d) motions[d].u += gradient * assembly.centres[d];

@@ -210,7 +210,8 @@ struct Solution {
 void write_state_of(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
                     const SolvedCase& result) {
   const OutputCase& wanted = problem.resolved.output;
-  const std::vector<ContactForce> forces = forces_in_total(problem, result.equilibrium.contact_forces);
+  const std::vector<ContactForce> forces =
+      forces_in_total(problem.assembly, problem.springs.springs, result.equilibrium.contact_forces);
   std::vector<Tensor2> stresses;
   if (cells_hold_area(problem.assembly)) stresses = disc_stresses(problem.assembly, forces);
   const AssemblyState state{.assembly = problem.assembly,
