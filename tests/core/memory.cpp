@@ -2,6 +2,11 @@
 #include "equidem/core/memory.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <new>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -35,4 +40,23 @@ TEST_CASE("the_peak_of_memory_is_that_of_the_work_and_begins_anew") {
   CHECK(afterwards > 0.9 * bytes);
   CHECK(less > 0.9 * bytes / 8);
   CHECK(less < (2.0 + kept_beside) * bytes / 8);
+}
+
+TEST_CASE("large_arrays_begin_at_a_huge_page_and_small_ones_waste_none") {
+  constexpr std::uintptr_t huge_page = std::uintptr_t{1} << 21;
+  const auto place_of = [](const void* array) { return reinterpret_cast<std::uintptr_t>(array); };
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  for (const std::size_t bytes : {huge_page + 1, 3 * huge_page, 40 * huge_page + 17}) {
+    const std::vector<char> array(bytes);
+    CHECK(place_of(array.data()) % huge_page == 0);
+  }
+  const std::vector<char> first(1000), second(1000);
+  CHECK(place_of(second.data()) - place_of(first.data()) + huge_page < 2 * huge_page);
+#endif
+  const auto freed = [](void* memory) { std::free(memory); };
+  const std::unique_ptr<void, decltype(freed)> none(allocate_on_huge_pages(0), freed);
+  CHECK(none != nullptr);
+  const std::size_t most = std::numeric_limits<std::size_t>::max() / 4;
+  CHECK(allocate_on_huge_pages(most) == nullptr);
+  CHECK_THROWS_AS(::operator new(most), std::bad_alloc);
 }

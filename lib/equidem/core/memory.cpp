@@ -2,12 +2,15 @@
 #include "equidem/core/memory.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <new>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
+#include <sys/mman.h>
 #include <sys/resource.h>
 
 #include "equidem/core/error.hpp"
@@ -41,6 +44,21 @@ void return_freed_memory() {
 #if defined(__GLIBC__)
   mallopt(M_MMAP_THRESHOLD, 1 << 22);
 #endif
+}
+
+void* allocate_on_huge_pages(std::size_t bytes) noexcept {
+  constexpr std::size_t huge_page = std::size_t{1} << 21;
+  if (bytes <= huge_page) return std::malloc(std::max<std::size_t>(bytes, 1));
+  void* memory = nullptr;
+  if (posix_memalign(&memory, huge_page, bytes) != 0) return nullptr;
+  madvise(memory, bytes, MADV_HUGEPAGE);  // advice: nothing is lost where it is not taken
+  return memory;
+}
+
+void* allocate_large(std::size_t bytes) {
+  if (void* const memory = allocate_on_huge_pages(bytes)) return memory;
+  out_of_memory(fmt::format("no memory for {}", readable_bytes(static_cast<double>(bytes))), "the system refused it",
+                "Use a smaller assembly or a machine with more memory");
 }
 
 PeakMemory::PeakMemory() {
@@ -107,3 +125,21 @@ void require_memory(double bytes, const std::string& what, const std::string& re
 }
 
 }  // namespace equidem
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// Weak: a program that links this library may replace them.
+[[gnu::weak]] void* operator new(std::size_t bytes) {
+  for (;;) {
+    if (void* const memory = equidem::allocate_on_huge_pages(bytes)) return memory;
+    const std::new_handler handler = std::get_new_handler();
+    if (handler == nullptr) throw std::bad_alloc();
+    handler();
+  }
+}
+[[gnu::weak]] void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+[[gnu::weak]] void operator delete(void* memory, std::size_t /*bytes*/) noexcept {
+  std::free(memory);
+}
+#endif

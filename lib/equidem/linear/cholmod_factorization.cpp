@@ -51,6 +51,12 @@ struct CholmodFactor {
   cholmod_factor* factor = nullptr;
 
   CholmodFactor(CompressedColumns lower, CholmodOrdering ordering) : columns(std::move(lower)) {
+    // The factor is first touched on huge pages: half the time at 1e5 discs where they are given on request.
+#if SUITESPARSE_VERSION >= SUITESPARSE_VER_CODE(6, 0)
+    SuiteSparse_config_malloc_func_set(allocate_on_huge_pages);
+#else
+    SuiteSparse_config.malloc_func = allocate_on_huge_pages;
+#endif
     cholmod_start(&common);
     common.print = 0;
     common.error_handler = nullptr;

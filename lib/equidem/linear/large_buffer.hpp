@@ -4,20 +4,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <new>
 #include <utility>
 #include <vector>
 
-namespace equidem {
+#include "equidem/core/memory.hpp"
 
-/// Uninitialized memory. Where it is large it comes from the system, on huge pages if there are any, and goes back to
-/// it when freed: kept by the allocator, it would lie beside the next array of gigabytes.
-/// \throws Error (computation_failed) where there is not enough
-void* allocate_large(std::size_t bytes);
-/// \param bytes as allocated
-void free_large(void* memory, std::size_t bytes);
+namespace equidem {
 
 /// Memory of a LargeVector. Its pages are first touched by the threads that fill it.
 template <typename T>
@@ -27,7 +23,7 @@ struct UntouchedAllocator {
   template <typename U>
   explicit UntouchedAllocator(const UntouchedAllocator<U>&) {}
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t count) { free_large(memory, count * sizeof(T)); }
+  void deallocate(T* memory, std::size_t /*count*/) { std::free(memory); }
   template <typename U>
   void construct(U* place) {
     ::new (static_cast<void*>(place)) U;  // no value: a resize leaves numbers as they are
@@ -39,8 +35,7 @@ struct UntouchedAllocator {
   bool operator==(const UntouchedAllocator&) const = default;
 };
 
-/// A vector whose resize leaves new elements uninitialized, on huge pages where the system has them: the first touch of
-/// small pages would cost a good part of a factorization.
+/// A vector whose resize leaves new elements uninitialized.
 template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
 

@@ -4,10 +4,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 #include <new>
 #include <vector>
 
-#include "equidem/linear/large_buffer.hpp"
+#include "equidem/core/memory.hpp"
 
 namespace equidem {
 
@@ -27,7 +28,7 @@ struct LaneAllocator {
     return static_cast<T*>(::operator new (bytes, std::align_val_t{cache_line}));
   }
   void deallocate(T* memory, std::size_t count) {
-    if (count * sizeof(T) >= large) return free_large(memory, count * sizeof(T));
+    if (count * sizeof(T) >= large) return std::free(memory);
     ::operator delete (memory, std::align_val_t{cache_line});
   }
   bool operator==(const LaneAllocator&) const = default;
