@@ -70,8 +70,7 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
     double stretch = springs.kN != 0 ? force.normal / springs.kN : 0;
     if (prestressed) {
       const ContactMotion motion = motion_of(network.local(), refined.motion, {}, c);
-      ContactResponse<double> response;
-      add_prestress(*network.springs.prestress(c), motion.deformation, motion.theta_i, motion.theta_j, response);
+      const auto response = contact_response(network.springs, c, motion.deformation, motion.theta_i, motion.theta_j);
       if (network.effects.restrained) sums[1] -= response.moment_i + response.moment_j;
       stretch = motion.deformation.normal;
     } else {

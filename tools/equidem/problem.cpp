@@ -521,6 +521,19 @@ void hold_loaded_at_rest(const Assembly& assembly, std::vector<std::uint8_t>& he
     if (norm(sums.forces[d]) > largest_imbalance * sums.mean_force) held[d] = 1;
 }
 
+std::optional<PrestressedSprings> choice_for(const Problem& problem) {
+  return casefile::with_place(problem.resolved.where("effects.prestress"), [&] {
+    return choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
+  });
+}
+
+/// Whether the forces at rest of the assembly, if it carries some, count.
+bool prestress_counts(const Problem& problem) {
+  if (!carries_forces(problem.assembly)) return false;
+  const auto choice = choice_for(problem);
+  return choice && choice->springs.prestressed();
+}
+
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where
 /// it is supported, with three where it is loaded, since fewer may roll.
 /// \param all those on measured sides too, whatever contacts they have
@@ -595,18 +608,6 @@ void leave_out_loose(Problem& problem) {
   measure_cells(rest);
   problem.springs.springs = std::move(network.part->springs);
   assembly = std::move(rest);
-}
-
-static std::optional<PrestressedSprings> choice_for(const Problem& problem) {
-  return casefile::with_place(problem.resolved.where("effects.prestress"), [&] {
-    return choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
-  });
-}
-
-bool prestress_counts(const Problem& problem) {
-  if (!carries_forces(problem.assembly)) return false;
-  const auto choice = choice_for(problem);
-  return choice && choice->springs.prestressed();
 }
 
 std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,

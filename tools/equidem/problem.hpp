@@ -199,10 +199,6 @@ void leave_out_loose(Problem& problem);
 /// \throws Error (bad_input) as choose_prestress
 Problem prestressed(Problem problem);
 
-/// Whether the forces at rest of the assembly, if it carries some, count.
-/// \throws Error (bad_input) as choose_prestress
-bool prestress_counts(const Problem& problem);
-
 /// Forces of the contacts with those at rest, where these count. \param changes by the loads
 std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
                                           std::vector<ContactForce> changes);

@@ -496,7 +496,7 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
   result.discs_removed = p.removed;
   result.rattlers = p.rattlers;
   result.removed = p.left_out;
-  // That of springs alone is no bound where forces at rest count.
+  // Voigt's stiffness of the springs alone is no bound where forces at rest count.
   if (!result.effects.prestress) homogenized.beside.push_back({"voigt", voigt_of_all(ranks, p), {}});
   times.add(result.times);
   Results all = homogenized_results(p.problem, part_problem_results(ranks, p), p.part.assembly.periodic(), homogenized,

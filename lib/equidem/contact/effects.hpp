@@ -52,7 +52,7 @@ struct Effects {
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
 /// Whether normal springs, or forces at rest, resist rotations where no contact has a tangential spring.
 bool resists_rotation_without_tangential(const Assembly& assembly, const ContactSprings& springs);
-/// \param off_lines resists_rotation_without_tangential
+/// \param off_lines what resists_rotation_without_tangential returns
 Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines = false);
 
 }  // namespace equidem
