@@ -72,20 +72,20 @@ struct GrainBond {
 
 /// Contact properties of two kinds of bodies.
 struct PairProperties {
-  /// Stiffness: linear laws N/m, hertz_dashpot N/m^(3/2); used if > 0, else `dimensionless`.
+  /// Stiffness k of a force k overlap^p, N/m^p; used if > 0, else `dimensionless`.
   double stiffness = 0;
-  /// a = k dt²/m, constant for all steps and masses (as in the paper); hertz_dashpot: k d_c^(1/2) dt²/m.
+  /// a = k dt²/m, constant for all steps and masses (as in the paper); where p is not 1, k d_c^(p-1) dt²/m.
   double dimensionless = 0;
   double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_loop.cpp
-  ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
+  ContactEnd end = ContactEnd::at_zero_force;  ///< read by laws that give a force, and exact_flow
   double friction = 0;                         ///< mu
-  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). Laws that give a force need more than 0 with
-  /// friction; with 0 other laws have contacts that always slide.
+  /// kT/kN >= 0; where p is not 1, kT/(k d_c^(p-1)). Laws that give a force need more than 0 with friction; with 0
+  /// other laws have contacts that always slide.
   double tangential_ratio = 0;
   double tangential_damping = 0;  ///< zeta_T: dashpot 2 zeta_T sqrt(m kT), m the effective tangential mass
   // rolling and cohesion of laws that give a force: contacts/contact_effects.hpp
   double rolling_friction = 0;  ///< mu_r
-  double rolling_ratio = 0;     ///< k_r/(kN R²), > 0 with rolling friction; hertz_dashpot: as tangential_ratio
+  double rolling_ratio = 0;     ///< k_r/(kN R²), > 0 with rolling friction; kN as in tangential_ratio
   double rolling_damping = 0;   ///< zeta_r: dashpot 2 zeta_r sqrt(I k_r), 1/I = 1/I_i + 1/I_j
   double cohesion = 0;          ///< F_c, N
   double cohesion_range = 0;    ///< largest gap at which it acts, m

@@ -20,17 +20,17 @@
 
 namespace equidem {
 
-/// Spring stiffness k: linear laws N/m, hertz_dashpot N/m^(3/2), each per metre of depth for discs.
+/// Stiffness k of a force k overlap^p, N/m^p, per metre of depth for discs.
 struct SpringStiffness {
   double value = 0;
 };
-/// Dimensionless stiffness a = k dt²/m, constant for every step and every reduced mass m; hertz_dashpot: k d_c^(1/2)
-/// dt²/m.
+/// Dimensionless stiffness a = k dt²/m, constant for every step and every reduced mass m; where p is not 1,
+/// k d_c^(p-1) dt²/m.
 struct DimensionlessStiffness {
   double value = 0;
 };
-/// Duration of a contact until the overlap is zero again, s, equal for all masses. Not for hertz_dashpot, whose
-/// contacts are shorter at higher speed.
+/// Duration of a contact until the overlap is zero again, s, equal for all masses. For linear laws: contacts of
+/// others are shorter at higher speed.
 struct ContactDuration {
   double value = 0;
 };
@@ -38,13 +38,13 @@ struct ContactDuration {
 struct LargestOverlap {
   double value = 0;
 };
-/// Elastic spheres, rigid walls: k by Hertz, for each pair of radii. hertz_dashpot only.
+/// Elastic spheres, rigid walls: k by Hertz, for each pair of radii. For laws of p = 3/2.
 struct HertzModuli {
   double young_modulus = 0;  ///< Pa
   double poisson_ratio = 0;  ///< in (-1, 0.5]
 };
-/// Discs as squares of a continuum in plane strain: kN = pi/4 rho Vp², kT = pi/4 rho Vs² (Sukegawa 2010, (2.26)). Not
-/// for hertz_dashpot.
+/// Discs as squares of a continuum in plane strain: kN = pi/4 rho Vp², kT = pi/4 rho Vs² (Sukegawa 2010, (2.26)). For
+/// linear laws.
 struct WaveSpeedStiffness {
   double density = 0;           ///< rho, kg/m³
   double shear_wave_speed = 0;  ///< Vs, m/s
