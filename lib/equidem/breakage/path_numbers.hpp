@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
+#include "equidem/core/double_double.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/vector.hpp"
 
@@ -73,13 +74,10 @@ class PathNumbers {
       number = static_cast<double>(value);  // integers below 2^53 are exact
     }
   }
-  // 64 bits of mantissa are two numbers of 53.
-  void one(long double& value) {
-    auto high = static_cast<double>(value);
-    auto low = static_cast<double>(value - static_cast<long double>(high));
+  void one(DoubleDouble& value) {
+    double high = value.high(), low = value.low();
     all(high, low);
-    if (restores_) value = high;
-    if (restores_ && low != 0) value += low;  // the sum of -0 and 0 is 0
+    if (restores_) value = DoubleDouble(high, low);
   }
   template <typename T>
   void one(DeformationOf<T>& d) {

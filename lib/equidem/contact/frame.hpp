@@ -93,11 +93,13 @@ inline Vec2 force_on_i(const ContactFrame& frame, const ContactForce& f) {
 /// The moments that the contact exerts on i and on j, about their centres, N.
 template <typename Number>
 Number moment_on_i(const ContactFrame& frame, const ForceOf<Number>& f) {
-  return frame.lever_i * f.tangential - frame.offset_i * f.normal;
+  const Number of_shear = frame.lever_i * f.tangential;
+  return frame.offset_i == 0 ? of_shear : of_shear - frame.offset_i * f.normal;
 }
 template <typename Number>
 Number moment_on_j(const ContactFrame& frame, const ForceOf<Number>& f) {
-  return frame.lever_j * f.tangential - frame.offset_j * f.normal;
+  const Number of_shear = frame.lever_j * f.tangential;
+  return frame.offset_j == 0 ? of_shear : of_shear - frame.offset_j * f.normal;
 }
 
 /// Vectors from the centre of i to the contact point, and from there to the centre of j, m.

@@ -40,9 +40,6 @@ double norm_of(std::span<const double> x) {
 /// Round-off of a factor in double precision hides the softest motions first, of which a correction then brings only a
 /// part, and always the same one: where corrections shrink slowly, each is scaled to the least energy,
 /// u := u + (d.r / d.K d) d, which brings all of one such motion.
-///
-/// Where the rounding of extended precision could leave a residual that counts, contacts are evaluated in quadruple
-/// precision.
 struct StiffnessSolver::Refinement {
   StiffnessSolver& solver;
   const RightHandSide& given;
@@ -66,7 +63,6 @@ struct StiffnessSolver::Refinement {
  private:
   void add_correction(std::span<double> x, int pass);
   double evaluate(std::span<double> residual) const;
-  [[nodiscard]] double rounding_of_forces() const;
   bool scale_to_least_energy(std::span<double> x) const;
   [[nodiscard]] double affine_length() const;
   [[nodiscard]] double affine_force() const;
@@ -127,14 +123,12 @@ void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x)
 }
 
 void StiffnessSolver::Refinement::add_correction(std::span<double> x, int pass) {
-  constexpr double slow = 0.05;         // share of the error that a pass leaves
-  constexpr double negligible = 1e-13;  // residual over its scale
+  constexpr double slow = 0.05;  // share of the error that a pass leaves
   const double step = solver.norm_of_free(x);
   const bool scaled = pass > 0 && step > slow * last_step_ && scale_to_least_energy(x);
   last_step_ = step;
   if (pass > 0) previous_ = solution.motion;
   solution.motion.add(x);
-  if (pass == 0) solution.motion.quadruple = rounding_of_forces() > negligible * solution.scale;
   const double before = solution.residual;
   const double now = evaluate(x);
   if (pass > 0 && !scaled && !(now < before)) {  // no better: keep the previous motion
@@ -177,36 +171,12 @@ double StiffnessSolver::Refinement::evaluate(std::span<double> residual) const {
   return solver.norm_of_free(residual);
 }
 
-/// Size of what the rounding of extended precision, 2^-64 of the motion of one body against the other, does to the
-/// forces of contacts, N/m.
-double StiffnessSolver::Refinement::rounding_of_forces() const {
-  const Assembly& assembly = solver.assembly_;
-  const auto b = static_cast<std::size_t>(solver.unknowns_.per_disc);
-  const double scale = solver.unknowns_.rotation_scale;
-  const std::vector<double>& u = solution.motion.high;
-  const auto squared = [](double x) { return x * x; };
-  return 0x1.0p-64 *
-         std::sqrt(sums_over<1>(assembly.contacts.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
-           double sum = 0;
-           for (std::size_t c = begin; c < end; ++c) {
-             const Contact& contact = assembly.contacts[c];
-             const std::size_t i = contact.i * b, j = contact.j * b;
-             double square = squared(u[j] - u[i]) + squared(u[j + 1] - u[i + 1]);
-             if (b == 3)
-               square += squared(contact.lever_i * u[i + 2] / scale) + squared(contact.lever_j * u[j + 2] / scale);
-             const SpringConstants& k = solver.springs_[c];
-             sum += (squared(k.kN) + squared(k.kT)) * square;
-           }
-           return std::array{sum};
-         })[0]);
-}
-
 /// x := (x.r / x.K x) x, the multiple of x at which the energy is stationary; false where there is none.
 bool StiffnessSolver::Refinement::scale_to_least_energy(std::span<double> x) const {
   std::vector<double> residual(x.size());
   evaluate(residual);
-  long double work = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) work += static_cast<long double>(x[k]) * residual[k];
+  DoubleDouble work;
+  for (std::size_t k = 0; k < x.size(); ++k) work += DoubleDouble::product(x[k], residual[k]);
   const double factor = static_cast<double>(work) / solver.twice_energy(x);
   constexpr double most = 100;  // more: the motions of the factor are not those of K
   if (!(factor > 0 && factor < most)) return false;
@@ -547,7 +517,7 @@ double StiffnessSolver::rounding_work(const RightHandSide& given, const PreciseM
         return equidem::norm(Vec2{x[j] - x[i], x[j + 1] - x[i + 1]});
       };
       const auto force = [&](const PreciseMotion& m, const std::optional<Tensor2>& gradient) {
-        const auto f = linear_spring_force(springs_[c], deformation_of(network, m, gradient, c));
+        const auto f = linear_spring_force(springs_[c], motion_of(network, m, gradient, c).deformation);
         return std::abs(f.normal) + std::abs(f.tangential);
       };
       work += rounding * normal_rounding(assembly_, contact) *

@@ -136,7 +136,7 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
 void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion, TangentSolver& solver) {
   const std::vector<PreciseDeformation> deformation = deformation_;
   const std::vector<ContactForce> forces = forces_;
-  const std::vector<long double> slip = slip_;
+  const std::vector<DoubleDouble> slip = slip_;
   const std::vector<double> internal = internal_;
   const PreciseMotion before = motion_;
   const double lambda = lambda_, dead_before = dead_, was_kept = kept_share_;

@@ -102,7 +102,7 @@ class UnbondedState {
   std::vector<ContactDeformation> affine_;
   std::vector<ContactStatus> status_;
   // Discs that nothing resists move far, and forces are small differences of deformation and slip.
-  std::vector<long double> slip_;  // m, plastic, per contact
+  std::vector<DoubleDouble> slip_;  // m, plastic, per contact
   PreciseMotion motion_;
   double lambda_ = 0, dead_ = 0;
   std::vector<double> rest_load_;  // per component: what balances the forces at rest

@@ -77,12 +77,11 @@ UpdatedNetwork::UpdatedNetwork(const Assembly& assembly, const ContactSprings& s
       unknowns_(std::move(unknowns)),
       cases_(std::move(cases)),
       options_(options),
-      stiffest_(springs.largest()),
       symbolic_(order_of({assembly, graph_, springs_, unknowns_}, cases_.size(), options.memory_limit)),
       factor_(symbolic_),
       spared_(assembly.contacts.size(), 0),
       affine_(cases_.size()),
-      exact_(cases_.size(), std::vector<ForceOf<Extended>>(assembly.contacts.size())),
+      exact_(cases_.size(), std::vector<ForceOf<DoubleDouble>>(assembly.contacts.size())),
       forces_(cases_.size(), std::vector<ContactForce>(assembly.contacts.size())),
       twice_energy_(cases_.size(), 0.0),
       unbalanced_(components() * cases_.size()),
@@ -122,7 +121,7 @@ std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
   if (changes.empty()) return {};
   std::vector<UpdatedCholesky::Load> loads(cases_.size());
   for (std::size_t p = 0; p < cases_.size(); ++p) {
-    const ForceOf<Extended>& f = exact_[p][number];
+    const ForceOf<DoubleDouble>& f = exact_[p][number];
     const bool normal = links_[number].springs.kN != 0;
     for (std::size_t k = 0; k < changes.size(); ++k) {
       const auto force = static_cast<double>(normal && k == 0 ? f.normal : f.tangential);
@@ -261,73 +260,48 @@ void UpdatedNetwork::evaluate() {
 }
 
 void UpdatedNetwork::evaluate_forces(std::size_t of_case) {
-  const auto b = static_cast<std::size_t>(symbolic_->block);
-  const PreciseMotion& u = motions_[of_case];
-  const std::vector<ContactDeformation>& affine = affine_[of_case];
-  const bool low = !u.low.empty();
-  const Extended scale = unknowns_.rotation_scale;
-  // Forces of motions so far beyond stretches that the rounding of extended precision counts need more digits.
-  constexpr double negligible = 1e-14;  // over the loads
-  double farthest = 0;
-  for (const double x : u.high) farthest = std::max(farthest, std::abs(x));
-  const double rounding = static_cast<double>(std::numeric_limits<Extended>::epsilon()) * stiffest_ * farthest;
-  const bool far = of_case < scales_.size() && rounding > negligible * scales_[of_case];
-  PreciseMotion whole(0);
-  if (far) whole = motion(of_case), whole.quadruple = true;
-  const SpringNetwork network{assembly_, graph_, springs_, unknowns_};
   twice_energy_[of_case] = sums_over<1>(links_.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t c = begin; c < end; ++c) {
-      const Link& link = links_[c];
-      ForceOf<Extended>& exact = exact_[of_case][c];
-      exact = {};
-      if (link.springs.kN == 0 && link.springs.kT == 0) {
-        forces_[of_case][c] = {};
-        continue;
-      }
-      const std::size_t i = static_cast<std::size_t>(link.i) * b, j = static_cast<std::size_t>(link.j) * b;
-      const auto moved = [&](std::size_t k) { return low ? Extended{u.high[k]} + u.low[k] : Extended{u.high[k]}; };
-      const auto apart = [&](std::size_t r) {
-        const Extended high = Extended{u.high[j + r]} - u.high[i + r];
-        return low ? high + (Extended{u.low[j + r]} - u.low[i + r]) : high;
-      };
-      Extended turn = 0, opening = 0;
-      if (b == 3) {
-        const Extended turn_i = moved(i + 2) / scale, turn_j = moved(j + 2) / scale;
-        turn = link.frame.lever_i * turn_i + link.frame.lever_j * turn_j;
-        opening = link.frame.offset_i * turn_i + link.frame.offset_j * turn_j;
-      }
-      DeformationOf<Extended> d = far ? precise_deformation_of(network, whole, {}, c)
-                                      : deformation(link.frame, apart(0), apart(1), turn, opening);
-      if (!affine.empty()) d.normal += affine[c].normal, d.tangential += affine[c].tangential;
-      exact = {link.springs.kN * d.normal, link.springs.kT * d.tangential};
-      const ContactForce f{static_cast<double>(exact.normal), static_cast<double>(exact.tangential)};
-      forces_[of_case][c] = spared_[c] != 0 ? ContactForce{} : f;
-      if (link.springs.kN != 0) sum += 2 * linear_spring_energy_of(link.springs, f);
-    }
-    return std::array{sum};
+    return std::array{with_double_doubles(
+        [&](auto number) { return evaluate_forces<typename decltype(number)::type>(of_case, begin, end); })};
   })[0];
 }
 
-/// The force that the contacts of a disc exert on it, moments over the scale of rotations, N/m.
-std::array<UpdatedNetwork::Extended, 3> UpdatedNetwork::pull_on(std::size_t disc, std::size_t of_case) const {
-  std::array<Extended, 3> pull{};
-  for (const auto& edge : graph_.of(disc)) {
-    const ForceOf<Extended>& f = exact_[of_case][edge.contact];
-    const Link& link = links_[edge.contact];
-    const Vec2 n = link.frame.normal;
-    const Extended x = f.normal * n.x - f.tangential * n.y, y = f.normal * n.y + f.tangential * n.x;
-    const std::int32_t place = symbolic_->position[disc];
-    if (link.i == place) {
-      pull[0] += x, pull[1] += y;
-      pull[2] += moment_on_i(link.frame, f);
+template <typename Number>
+double UpdatedNetwork::evaluate_forces(std::size_t of_case, std::size_t begin, std::size_t end) {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const PreciseMotion& u = motions_[of_case];
+  const std::vector<ContactDeformation>& affine = affine_[of_case];
+  double twice_energy = 0;
+  for (std::size_t c = begin; c < end; ++c) {
+    const Link& link = links_[c];
+    ForceOf<DoubleDouble>& exact = exact_[of_case][c];
+    exact = {};
+    if (link.springs.kN == 0 && link.springs.kT == 0) {
+      forces_[of_case][c] = {};
+      continue;
     }
-    if (link.j == place) {
-      pull[0] -= x, pull[1] -= y;
-      pull[2] += moment_on_j(link.frame, f);
-    }
+    const std::size_t i = static_cast<std::size_t>(link.i) * b, j = static_cast<std::size_t>(link.j) * b;
+    DeformationOf<Number> d = precise_motion_of<Number>(link.frame, u, i, j, unknowns_, false).deformation;
+    if (!affine.empty()) d.normal += affine[c].normal, d.tangential += affine[c].tangential;
+    const Number normal = link.springs.kN * d.normal, tangential = link.springs.kT * d.tangential;
+    exact = {DoubleDouble(normal), DoubleDouble(tangential)};
+    const ContactForce f{static_cast<double>(normal), static_cast<double>(tangential)};
+    forces_[of_case][c] = spared_[c] != 0 ? ContactForce{} : f;
+    if (link.springs.kN != 0) twice_energy += 2 * linear_spring_energy_of(link.springs, f);
   }
-  pull[2] /= unknowns_.rotation_scale;
+  return twice_energy;
+}
+
+/// The force that the contacts of a disc exert on it, N/m and N.
+template <typename Number>
+PullOf<Number> UpdatedNetwork::pull_on(std::size_t disc, std::size_t of_case) const {
+  PullOf<Number> pull;
+  const std::int32_t place = symbolic_->position[disc];
+  for (const auto& edge : graph_.of(disc)) {
+    const Link& link = links_[edge.contact];
+    const ForceOf<DoubleDouble>& force = exact_[of_case][edge.contact];
+    pull.add(link.frame, {Number(force.normal), Number(force.tangential)}, link.i == place, link.j == place);
+  }
   return pull;
 }
 
@@ -337,19 +311,22 @@ double UpdatedNetwork::balance(std::size_t of_case) {
   const std::vector<double>& load = cases_[of_case].force;
   const std::span<double> unbalanced = column(unbalanced_, of_case);
   const auto square = sums_over<1>(assembly_.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t disc = begin; disc < end; ++disc) {
-      const std::array<Extended, 3> pull = pull_on(disc, of_case);
-      const std::size_t place = static_cast<std::size_t>(symbolic_->position[disc]) * b;
-      for (std::size_t r = 0; r < b; ++r) {
-        const std::size_t component = disc * b + r;
-        const Extended left = load.empty() ? pull[r] : pull[r] + load[component];
-        const double kept = unknowns_.held[component] != 0 ? 0.0 : static_cast<double>(left);
-        unbalanced[place + r] = kept;
-        sum += kept * kept;
+    return std::array{with_double_doubles([&](auto number) {
+      using Number = typename decltype(number)::type;
+      double sum = 0;
+      for (std::size_t disc = begin; disc < end; ++disc) {
+        const std::array<Number, 3> components = pull_on<Number>(disc, of_case).components(unknowns_.rotation_scale);
+        const std::size_t place = static_cast<std::size_t>(symbolic_->position[disc]) * b;
+        for (std::size_t r = 0; r < b; ++r) {
+          const std::size_t component = disc * b + r;
+          const Number left = load.empty() ? components[r] : components[r] + load[component];
+          const double kept = unknowns_.held[component] != 0 ? 0.0 : static_cast<double>(left);
+          unbalanced[place + r] = kept;
+          sum += kept * kept;
+        }
       }
-    }
-    return std::array{sum};
+      return sum;
+    })};
   });
   return std::sqrt(square[0]);
 }
@@ -402,7 +379,8 @@ EquilibriumSums UpdatedNetwork::sums() const {
     if (unknowns_.held[k] == DegreesOfFreedom::free || prescribed[k] == 0) continue;
     for (std::size_t q = 0; q < cases_.size(); ++q) {
       const double load = cases_[q].force.empty() ? 0 : cases_[q].force[k];
-      result.imposed[q] -= prescribed[k] * (load + static_cast<double>(pull_on(k / b, q)[k % b]));
+      const auto pull = pull_on<DoubleDouble>(k / b, q).components(unknowns_.rotation_scale);
+      result.imposed[q] -= prescribed[k] * (load + static_cast<double>(pull[k % b]));
     }
   }
   return result;

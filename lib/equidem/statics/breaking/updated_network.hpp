@@ -86,8 +86,6 @@ class UpdatedNetwork {
   [[nodiscard]] const UpdateCounters& counters() const { return counters_; }
 
  private:
-  using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
-
   /// A contact as its forces are evaluated; discs are named by their position in the order of elimination, and arms are
   /// 0 where rotations are no unknowns.
   struct Link {
@@ -110,7 +108,8 @@ class UpdatedNetwork {
   [[nodiscard]] UpdatedCholesky::Columns change() { return {change_.data(), components(), cases_.size()}; }
   [[nodiscard]] std::size_t place_of(std::int64_t component) const;
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
-  [[nodiscard]] std::array<Extended, 3> pull_on(std::size_t disc, std::size_t of_case) const;
+  template <typename Number>
+  [[nodiscard]] PullOf<Number> pull_on(std::size_t disc, std::size_t of_case) const;
   [[nodiscard]] HeldMechanism mechanism_at(std::int64_t component);
   /// Refines the motions, and factorizes anew where that does not serve.
   /// \return mechanisms that a new factorization came across
@@ -121,6 +120,9 @@ class UpdatedNetwork {
   void add_change();
   void evaluate();
   void evaluate_forces(std::size_t of_case);
+  /// \return twice the energy of the contacts of the range, N
+  template <typename Number>
+  double evaluate_forces(std::size_t of_case, std::size_t begin, std::size_t end);
   double balance(std::size_t of_case);
 
   const Assembly& assembly_;
@@ -129,7 +131,6 @@ class UpdatedNetwork {
   DegreesOfFreedom unknowns_;
   std::vector<RightHandSide> cases_;
   UpdatedNetworkOptions options_;
-  double stiffest_;  // spring, Pa
   std::shared_ptr<const SymbolicFactor> symbolic_;
   UpdatedCholesky factor_;
   UpdateCounters counters_;
@@ -138,13 +139,13 @@ class UpdatedNetwork {
   std::vector<std::uint8_t> spared_;                     // per contact, 1
   std::vector<std::vector<ContactDeformation>> affine_;  // per right-hand side and contact, by its mean strain, m
   // Per right-hand side:
-  std::vector<std::vector<ForceOf<Extended>>> exact_;  // forces of contacts, N/m
-  std::vector<std::vector<ContactForce>> forces_;      // the same, as reported
-  std::vector<PreciseMotion> motions_;                 // in the order of elimination
-  std::vector<double> scales_;                         // N/m: reference of relative residuals
-  std::vector<double> twice_energy_;                   // N
-  LargeVector<double> unbalanced_;                     // N/m, loads that forces leave, in the order of elimination
-  LargeVector<double> change_;                         // right-hand sides and solutions
+  std::vector<std::vector<ForceOf<DoubleDouble>>> exact_;  // forces of contacts, N/m
+  std::vector<std::vector<ContactForce>> forces_;          // the same, as reported
+  std::vector<PreciseMotion> motions_;                     // in the order of elimination
+  std::vector<double> scales_;                             // N/m: reference of relative residuals
+  std::vector<double> twice_energy_;                       // N
+  LargeVector<double> unbalanced_;                         // N/m, loads that forces leave, in the order of elimination
+  LargeVector<double> change_;                             // right-hand sides and solutions
   double residual_ = 0;
   bool carried_ = true;         // no load drives a mechanism
   int altered_ = 0;             // contacts since the factor was made
