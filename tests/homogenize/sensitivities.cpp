@@ -124,6 +124,58 @@ TEST_CASE("a_small_change_of_a_spring_changes_the_stiffness_by_its_derivative") 
   }
 }
 
+TEST_CASE("the_stiffness_changes_with_places_and_radii_of_discs_by_its_derivatives") {
+  const bool bend = GENERATE(false, true);
+  for (const auto& [name, given] : assemblies(true)) {
+    Assembly assembly = given;
+    place_contact_points(assembly, ContactPoints::radii);
+    const ContactSprings springs = springs_of(assembly, bend);
+    const ShapeSensitivities found = shape_sensitivities(assembly, springs, effective_stiffness(assembly, springs));
+    CAPTURE(name, bend);
+    REQUIRE(found.by_radius.size() == assembly.size());
+    Random random(4);
+    std::vector<Vec2> places(assembly.size());
+    std::vector<double> radii(assembly.size());
+    Matrix3 by_places{}, by_radii{};
+    for (std::size_t d = 0; d < assembly.size(); ++d) {
+      const double size = 0.1 * assembly.mean_radius();
+      places[d] = {size * random.uniform(-1, 1), size * random.uniform(-1, 1)};
+      radii[d] = size * random.uniform(-1, 1);
+      by_places = by_places + places[d].x * found.by_position[d][0] + places[d].y * found.by_position[d][1];
+      by_radii = by_radii + radii[d] * found.by_radius[d];
+    }
+    const auto changed = [&](double moved, double grown) {
+      Assembly other = assembly;
+      for (std::size_t d = 0; d < other.size(); ++d)
+        other.centres[d] += moved * places[d], other.radii[d] += grown * radii[d];
+      place_contact_points(other, ContactPoints::radii);
+      return stiffness_of(other, springs);
+    };
+    constexpr double h = 1e-3;
+    const auto difference = [&](double moved, double grown) {
+      const auto over = [&](double t) {
+        return (0.5 / t) * (changed(t * moved, t * grown) - changed(-t * moved, -t * grown));
+      };
+      return (4.0 / 3) * over(h / 2) - (1.0 / 3) * over(h);
+    };
+    const double scale = largest(stiffness_of(assembly, springs));
+    CHECK(largest(difference(1, 0) - by_places) < 1e-7 * scale);
+    CHECK(largest(difference(0, 1) - by_radii) < 1e-7 * scale);
+  }
+}
+
+TEST_CASE("derivatives_by_radii_need_contact_points_that_follow_them") {
+  const Assembly assembly = assemblies(true)[3].assembly;
+  const ContactSprings springs = springs_of(assembly, false);
+  const EffectiveStiffness result = effective_stiffness(assembly, springs);
+  CHECK(shape_sensitivities(assembly, springs, result).by_radius.empty());
+  const Assembly free = assemblies(false)[0].assembly;
+  const ContactSprings on_free = springs_of(free, false);
+  const EffectiveStiffness of_free =
+      effective_stiffness(free, on_free, {.boundary = Boundary::displacement, .solver = {}});
+  CHECK(contains(message_of([&] { shape_sensitivities(free, on_free, of_free); }), "sample with sides"));
+}
+
 TEST_CASE("moduli_change_with_the_stiffness_by_their_derivatives") {
   const Matrix3 stiffness{{{3e9, 1e9, 0.1e9}, {1e9, 2.8e9, -0.2e9}, {0.1e9, -0.2e9, 0.9e9}}};
   const Matrix3 change{{{2e6, 1e6, 3e6}, {1e6, -1e6, 0}, {3e6, 0, 4e6}}};

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/homogenize/sensitivities.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/shape_derivatives.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
@@ -28,17 +30,29 @@ std::vector<std::int32_t> bearing_contacts(const Assembly& assembly, const LoadB
   return all;
 }
 
+/// The contacts that carry load in the states of a result.
+std::vector<std::int32_t> bearing_contacts(const Assembly& assembly, const ContactSprings& springs,
+                                           const EffectiveStiffness& result) {
+  return bearing_contacts(assembly, result.discs_removed > 0 ? load_bearing_network(assembly, springs, result.effects)
+                                                             : LoadBearingNetwork{});
+}
+
+EndMotions end_motions(const EffectiveStiffness& result, const Contact& contact, std::size_t strain) {
+  const std::vector<DiscMotion>& motions = result.fluctuations[strain];
+  return {motions[contact.i], motions[contact.j], unit_gradients[strain]};
+}
+
 void refuse_unsuitable(const EffectiveStiffness& result) {
   if (result.fluctuations.size() < 3) {
-    bad_input("derivatives by springs are asked for, and the boundary carries tractions",
+    bad_input("derivatives of the stiffness are asked for, and the boundary carries tractions",
               "they follow from the states of prescribed mean strains",
               "Use boundary = \"periodic\" or \"displacement\"");
   }
   const std::int64_t unstable = result.unstable_modes.value_or(0);
   if (unstable == 0) return;
-  bad_input(
-      fmt::format("derivatives by springs are asked for, and the network has {}", counted(unstable, "unstable mode")),
-      "their stiffness is that of no state of rest", "Choose springs at which it is stable");
+  bad_input(fmt::format("derivatives of the stiffness are asked for, and the network has {}",
+                        counted(unstable, "unstable mode")),
+            "their stiffness is that of no state of rest", "Choose springs at which it is stable");
 }
 
 }  // namespace
@@ -46,21 +60,19 @@ void refuse_unsuitable(const EffectiveStiffness& result) {
 SpringSensitivities spring_sensitivities(const Assembly& assembly, const ContactSprings& springs,
                                          const EffectiveStiffness& result) {
   refuse_unsuitable(result);
-  const LoadBearingNetwork bearing =
-      result.discs_removed > 0 ? load_bearing_network(assembly, springs, result.effects) : LoadBearingNetwork{};
   SpringSensitivities found;
   found.by_kN.resize(assembly.contacts.size());
   found.by_kT.resize(assembly.contacts.size());
   if (springs.bends()) found.by_kM.resize(assembly.contacts.size());
-  for (const std::int32_t number : bearing_contacts(assembly, bearing)) {
+  for (const std::int32_t number : bearing_contacts(assembly, springs, result)) {
     const auto c = static_cast<std::size_t>(number);
     const Contact& contact = assembly.contacts[c];
     const ContactFrame frame = frame_of(assembly, c);
     Strains stretch, slip, turn;
     for (std::size_t a = 0; a < 3; ++a) {
-      const DiscMotion &i = result.fluctuations[a][contact.i], &j = result.fluctuations[a][contact.j];
+      const auto& [i, j, gradient] = end_motions(result, contact, a);
       const ContactDeformation beside = deformation(frame, i, j);
-      const ContactDeformation mean = affine_deformation(frame, assembly.branch(contact), unit_gradients[a]);
+      const ContactDeformation mean = affine_deformation(frame, assembly.branch(contact), gradient);
       stretch[a] = beside.normal + mean.normal;
       slip[a] = beside.tangential + mean.tangential;
       turn[a] = j.theta - i.theta;
@@ -68,6 +80,65 @@ SpringSensitivities spring_sensitivities(const Assembly& assembly, const Contact
     found.by_kN[c] = products(stretch, result.area);
     found.by_kT[c] = products(slip, result.area);
     if (springs.bends()) found.by_kM[c] = products(turn, result.area);
+  }
+  return found;
+}
+
+namespace {
+
+void refuse_shapes(const Assembly& assembly, const ContactSprings& springs) {
+  constexpr const char* asked = "derivatives by positions and radii are asked for";
+  if (!assembly.periodic())
+    bad_input(std::string(asked) + " of a sample with sides", "its area changes with the discs at them",
+              "Take a periodic cell");
+  if (!assembly.contact_arms.empty())
+    bad_input(std::string(asked) + ", and contact points are off the line of centres",
+              "how they move with the bodies is not known", "Take discs");
+  if (springs.prestressed())
+    bad_input(std::string(asked) + ", and contacts carry forces at rest", "these would change too",
+              "Write prestress = \"off\" in [effects]");
+}
+
+/// Whether each contact point divides the distance as the radii do.
+bool points_by_radii(const Assembly& assembly) {
+  return std::ranges::all_of(assembly.contacts, [&](const Contact& c) {
+    const double r_i = assembly.radii[c.i], r_j = assembly.radii[c.j];
+    return std::abs(c.lever_i * r_j - c.lever_j * r_i) <= 1e-9 * std::abs(c.lever_i * r_j);
+  });
+}
+
+}  // namespace
+
+ShapeSensitivities shape_sensitivities(const Assembly& assembly, const ContactSprings& springs,
+                                       const EffectiveStiffness& result) {
+  refuse_unsuitable(result);
+  refuse_shapes(assembly, springs);
+  ShapeSensitivities found{.by_position = std::vector<std::array<Matrix3, 2>>(assembly.size()), .by_radius = {}};
+  if (points_by_radii(assembly)) found.by_radius.resize(assembly.size());
+  for (const std::int32_t number : bearing_contacts(assembly, springs, result)) {
+    const auto c = static_cast<std::size_t>(number);
+    const Contact& contact = assembly.contacts[c];
+    const ContactFrame frame = frame_of(assembly, c);
+    const Vec2 branch = assembly.branch(contact);
+    const double r_i = assembly.radii[contact.i], r_j = assembly.radii[contact.j];
+    const double per_radius = norm(branch) / ((r_i + r_j) * (r_i + r_j));
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) {
+        const EndMotions of_a = end_motions(result, contact, a), of_b = end_motions(result, contact, b);
+        const auto [by_branch, by_point] =
+            energy_by_shape(frame, branch, springs[c],
+                            {of_a, of_b, deformation(frame, branch, of_a), deformation(frame, branch, of_b)});
+        const auto add = [&, &by = by_branch, area = result.area](std::int32_t disc, double sign) {
+          found.by_position[disc][0][a][b] += sign * by.x / area;
+          found.by_position[disc][1][a][b] += sign * by.y / area;
+        };
+        add(contact.j, 1);
+        add(contact.i, -1);
+        if (found.by_radius.empty()) continue;
+        found.by_radius[contact.i][a][b] += by_point * r_j * per_radius / result.area;
+        found.by_radius[contact.j][a][b] -= by_point * r_i * per_radius / result.area;
+      }
+    }
   }
   return found;
 }

@@ -8,6 +8,9 @@
 ///
 ///   dC_ab/dkN_c = n_a n_b/A,   dC_ab/dkT_c = s_a s_b/A,   dC_ab/dkM_c = w_a w_b/A.
 ///
+/// In the same way places and radii count by what they do to stretches and slips while the fluctuations stay
+/// (shape_derivatives.hpp).
+///
 /// Without forces at rest C = sum kN dC/dkN + kT dC/dkT + kM dC/dkM (Euler, C is homogeneous in the springs).
 #pragma once
 
@@ -30,6 +33,19 @@ struct SpringSensitivities {
 ///         changes without bound at a limit of stability
 SpringSensitivities spring_sensitivities(const Assembly& assembly, const ContactSprings& springs,
                                          const EffectiveStiffness& result);
+
+/// Per disc; springs, contacts and the period stay as they are. 0 where a disc carries no load.
+struct ShapeSensitivities {
+  std::vector<std::array<Matrix3, 2>> by_position;  ///< Pa/m, along x and y; levers keep their shares of the distance
+  /// Pa/m; empty where contact points do not lie as the radii say (ContactPoints::radii).
+  std::vector<Matrix3> by_radius;
+};
+
+/// \param result of the same assembly and springs
+/// \throws Error (bad_input) as spring_sensitivities; for samples that are not periodic, whose area changes; where
+///         contact points are off the line of centres, or forces at rest count
+ShapeSensitivities shape_sensitivities(const Assembly& assembly, const ContactSprings& springs,
+                                       const EffectiveStiffness& result);
 
 /// The change of the stiffness where the springs of a contact grow by a common factor, over its change, Pa.
 Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities, std::size_t contact);

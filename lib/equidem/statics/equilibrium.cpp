@@ -48,8 +48,8 @@ struct EquilibriumSolver::Implementation {
         solver(build(supports)) {}
 
   StiffnessSolver build(std::span<const Support> supports);
-  /// \param force per component, N/m
-  [[nodiscard]] Equilibrium solve(std::vector<double> force);
+  /// \param force per component, N/m \param prescribed per component, m
+  [[nodiscard]] Equilibrium solve(std::vector<double> force, std::vector<double> prescribed);
   void check_mechanisms(const RightHandSide& given, Equilibrium& result) const;
   void bound_error(const RightHandSide& given, const Solution& solution, Equilibrium& result);
   void describe_state(std::span<const double> f, const PreciseMotion& motion, Equilibrium& result) const;
@@ -71,7 +71,7 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
       times};
 }
 
-Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) {
+Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force, std::vector<double> prescribed) {
   Equilibrium result;
   result.times = times;
   const DegreesOfFreedom& unknowns = solver.unknowns();
@@ -80,8 +80,7 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   check_inert_loads(assembly, unknowns, given.force);
   check_mechanisms(given, result);
   const auto moves = [](double u) { return u != 0; };
-  if (std::any_of(unknowns.prescribed.begin(), unknowns.prescribed.end(), moves))
-    given.prescribed = unknowns.prescribed;
+  if (std::any_of(prescribed.begin(), prescribed.end(), moves)) given.prescribed = std::move(prescribed);
   // Power of two: nothing is rounded.
   double size = 0;
   for (const std::vector<double>* all : {&given.force, &given.prescribed}) {
@@ -204,11 +203,23 @@ EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = 
 
 Equilibrium EquilibriumSolver::solve(const LoadCase& loads) {
   Implementation& self = *implementation_;
-  return self.solve(assemble_loads(self.assembly, self.solver.unknowns(), loads));
+  const DegreesOfFreedom& unknowns = self.solver.unknowns();
+  return self.solve(assemble_loads(self.assembly, unknowns, loads), unknowns.prescribed);
 }
 Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) {
   assert(loads.size() == implementation_->assembly.size());
-  return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads));
+  const DegreesOfFreedom& unknowns = implementation_->solver.unknowns();
+  return implementation_->solve(assemble_loads(unknowns, loads), unknowns.prescribed);
+}
+Equilibrium EquilibriumSolver::solve_held(std::span<const DiscForce> loads) {
+  assert(loads.size() == implementation_->assembly.size());
+  return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads), {});
+}
+const Assembly& EquilibriumSolver::assembly() const {
+  return implementation_->assembly;
+}
+const ContactSprings& EquilibriumSolver::springs() const {
+  return implementation_->springs;
 }
 const Effects& EquilibriumSolver::effects() const {
   return implementation_->effects;

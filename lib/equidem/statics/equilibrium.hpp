@@ -88,6 +88,10 @@ class EquilibriumSolver {
   [[nodiscard]] Equilibrium solve(const LoadCase& loads);
   /// \param loads one for each disc
   [[nodiscard]] Equilibrium solve(std::span<const DiscForce> loads);
+  /// Likewise, with supports that do not move.
+  [[nodiscard]] Equilibrium solve_held(std::span<const DiscForce> loads);
+  [[nodiscard]] const Assembly& assembly() const;
+  [[nodiscard]] const ContactSprings& springs() const;
   [[nodiscard]] const Effects& effects() const;
   [[nodiscard]] std::int64_t unknowns() const;
 
