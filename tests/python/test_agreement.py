@@ -93,6 +93,47 @@ def test_one_factor_solves_many_loads():
         assert np.array_equal(together.displacements[:, :, k], factor.solve(loads[:, :, k]).displacements)
 
 
+def test_derivatives_of_measured_numbers_are_those_of_differences():
+    block = BLOCKS["delaunay"]()
+    random = np.random.default_rng(4)
+    n, m = len(block), len(block.contacts)
+    loads, weights = random.normal(size=(n, 2)), random.normal(size=(n, 2))
+    of_forces = random.normal(size=(m, 2)) / KN
+    kN, kT = KN * random.uniform(0.8, 1.2, (2, m))
+    held = [{"group": block.groups["left"], "ux": 0, "uy": 0}]
+
+    def measured(change):
+        factor = eq.factorize(block, eq.Springs(kN + change * direction, kT), held)
+        state = factor.solve(loads)
+        return (weights * state.displacements).sum() + (of_forces * state.contact_forces).sum()
+
+    found = eq.factorize(block, eq.Springs(kN, kT), held).derivatives(loads, motions=weights, forces=of_forces)
+    direction = KN * random.uniform(-1, 1, m)
+    assert np.isclose(found.value, measured(0), rtol=1e-12)
+    expected = (measured(1e-4) - measured(-1e-4)) / 2e-4
+    assert abs(found.by_kN @ direction - expected) <= 1e-6 * abs(found.by_kN * direction).sum()
+    # q is linear in the loads
+    assert np.isclose((found.by_force * loads).sum(), found.value, rtol=1e-9)
+    assert found.by_moment.shape == (n,) and found.by_position.shape == (n, 2) and "by_kM" not in found
+
+
+def test_natural_frequencies_change_as_their_modes_say():
+    block = BLOCKS["delaunay"]()
+    m = len(block.contacts)
+    direction = KN * np.random.default_rng(5).uniform(-0.1, 0.1, m)
+
+    def lowest(change):
+        result = eq.stability(block, eq.Springs(np.full(m, KN) + change * direction, np.full(m, KT)),
+                              supports=[{"group": "left", "ux": 0, "uy": 0}], density=2500.0)
+        return result, result.natural_omegas[0] ** 2
+
+    result, _ = lowest(0)
+    mode = result.modes["0"]
+    turned = np.column_stack([mode.displacements, mode.rotations])
+    change = eq.form_derivatives(block, (KN, KT), turned).by_kN @ direction
+    assert np.isclose((lowest(0.1)[1] - lowest(-0.1)[1]) / 0.2, change, rtol=1e-3)
+
+
 @pytest.mark.parametrize("kind", CELLS)
 def test_effective_stiffness_is_that_of_dense_matrices(kind):
     cell = CELLS[kind]()

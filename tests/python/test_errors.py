@@ -20,6 +20,7 @@ STUDY = PACKINGS.parent / "studies/abe_lattice.toml"
 CENTRES = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7]]
 BLOCK = eq.hexagonal(columns=5, rows=5, radius=1e-3)
 HELD = [{"group": "left", "ux": 0, "uy": 0}]
+LOADS = np.ones((len(BLOCK), 2))
 
 WRONG = {
     "a_wrong_shape": (lambda: eq.Assembly([[0, 0, 0]], 1.0), "shape"),
@@ -78,6 +79,11 @@ WRONG = {
     "a_disc_of_a_group_that_does_not_exist":
         (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": [999], "ux": 0, "uy": 0}]), "999"),
     "loads_of_too_few_discs": (lambda: eq.factorize(BLOCK, (1.0, 0.5), HELD).solve(np.ones((3, 3))), "shape"),
+    "weights_of_too_few_discs":
+        (lambda: eq.factorize(BLOCK, (1.0, 0.5), HELD).derivatives(LOADS, motions=np.ones((3, 2))), "shape"),
+    "weights_of_too_few_contacts":
+        (lambda: eq.factorize(BLOCK, (1.0, 0.5), HELD).derivatives(LOADS, forces=np.ones((3, 2))), "shape"),
+    "motions_with_four_columns": (lambda: eq.form_derivatives(BLOCK, (1.0, 0.5), np.ones((len(BLOCK), 4))), "shape"),
     "a_support_of_a_factor_on_no_disc":
         (lambda: eq.factorize(BLOCK, (1.0, 0.5), [{"group": [999], "ux": 0}]), "999"),
     "an_unknown_option": (lambda: eq.Case(CASES / "abe1996_fig6.toml").solve(acuracy=1), "acuracy"),
@@ -142,6 +148,7 @@ PUBLIC = {
     "calibrate": lambda **more: eq.calibrate(BLOCK, young_modulus=1e9, poisson_ratio=0.1, **more),
     "delaunay": lambda **more: eq.delaunay(discs=20, radius=1.0, **more),
     "factorize": lambda **more: eq.factorize(BLOCK, (1.0, 0.5), HELD, **more),
+    "form_derivatives": lambda **more: eq.form_derivatives(BLOCK, (1.0, 0.5), np.zeros((len(BLOCK), 2)), **more),
     "hexagonal": lambda **more: eq.hexagonal(columns=4, rows=4, radius=1.0, **more),
     "homogenize": lambda **more: eq.homogenize(BLOCK, (1.0, 0.5), **more),
     "StrengthSample": lambda **more: eq.StrengthSample(BLOCK, (1.0, 0.5), **more),

@@ -59,6 +59,9 @@ def test_the_stiffness_is_the_sum_of_springs_times_its_derivatives():
     assert not result.dC_dkN.flags.writeable and "dC_dkM" not in result
     whole = 1e9 * result.dC_dkN.sum(axis=0) + 0.5e9 * result.dC_dkT.sum(axis=0)
     assert np.allclose(whole, result.stiffness, rtol=0, atol=1e-9 * np.abs(whole).max())
+    assert result.dC_dx.shape == result.dC_dradius.shape == (len(cell), 3, 3) and result.units["dC_dy"] == "Pa/m"
+    # it does not change where the whole cell moves
+    assert abs(result.dC_dx.sum(axis=0)).max() <= 1e-9 * abs(result.dC_dx).max() * len(cell)
     assert "dC_dkN" not in eq.homogenize(cell, SPRINGS)
 
 

@@ -12,6 +12,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/statics/motion_description.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
@@ -174,6 +175,58 @@ TEST_CASE("derivatives_of_measured_numbers_are_those_of_differences") {
   CHECK((prestress || scenes >= 10));
 }
 
+TEST_CASE("derivatives_of_the_energy_are_those_of_differences") {
+  Random random(23);
+  for (const HeldScene& held : held_scenes()) {
+    CAPTURE(held.name);
+    const Assembly& assembly = held.assembly();
+    const bool bend = random.uniform() < 0.5;
+    const MeasuredScene scene = measured_scene(held, bend, false, random);
+    const std::size_t contacts = assembly.contacts.size();
+    const double a = assembly.mean_radius();
+    std::vector<DiscMotion> motions(assembly.size());
+    for (DiscMotion& u : motions) u = {{random.uniform(-1, 1), random.uniform(-1, 1)}, random.uniform(-1, 1) / a};
+    const SpringAndPlaceDerivatives found = form_derivatives(assembly, scene.springs, motions, motions);
+    Direction along{drawn(contacts, 0.1 * kN, random),
+                    drawn(contacts, 0.1 * kN, random),
+                    drawn(contacts, bend ? 0.1 * kN * a * a : 0, random),
+                    {},
+                    std::vector<Vec2>(assembly.size())};
+    for (Vec2& x : along.places) x = {0.1 * a * random.uniform(-1, 1), 0.1 * a * random.uniform(-1, 1)};
+    const auto twice_energy = [&](double t) {
+      return 2 * elastic_energy(moved(assembly, along.places, t), with_changes(scene.springs, along, t), motions);
+    };
+    Along all;
+    for (std::size_t c = 0; c < contacts; ++c) {
+      all.add(found.by_kN[c] * along.kN[c]), all.add(found.by_kT[c] * along.kT[c]);
+      if (bend) all.add(found.by_kM[c] * along.kM[c]);
+    }
+    for (std::size_t d = 0; d < assembly.size(); ++d) all.add(dot(found.by_position[d], along.places[d]));
+    const auto difference = [&](double t) { return (twice_energy(t) - twice_energy(-t)) / (2 * t); };
+    constexpr double h = 1e-3;
+    CHECK(std::abs((4 * difference(h / 2) - difference(h)) / 3 - all.sum) < 1e-9 * all.magnitude);
+  }
+}
+
+TEST_CASE("iterations_find_the_derivatives_that_elimination_finds") {
+  Random random(29);
+  const HeldScene held = held_scenes().front();
+  const MeasuredScene scene = measured_scene(held, false, false, random);
+  const auto found_by = [&](SolverMethod method) {
+    EquilibriumOptions options = scene.options;
+    options.solver.method = method;
+    EquilibriumSolver solver(scene.assembly, scene.springs, scene.supports, options);
+    return derivatives(solver, solver.solve(scene.loads), scene.measure);
+  };
+  const MeasureDerivatives a = found_by(SolverMethod::multifrontal), b = found_by(SolverMethod::multigrid);
+  Along all, apart;
+  for (std::size_t c = 0; c < a.by_kN.size(); ++c) {
+    all.add(a.by_kN[c]), all.add(a.by_kT[c]);
+    apart.add(b.by_kN[c] - a.by_kN[c]), apart.add(b.by_kT[c] - a.by_kT[c]);
+  }
+  CHECK(apart.magnitude < 1e-9 * all.magnitude);
+}
+
 TEST_CASE("what_is_measured_has_as_many_weights_as_there_are_discs_and_contacts") {
   const HeldScene held = held_scenes().front();
   EquilibriumSolver solver(held.assembly(), held.springs, held.supports, held.options);
@@ -183,4 +236,6 @@ TEST_CASE("what_is_measured_has_as_many_weights_as_there_are_discs_and_contacts"
     const Refusal refusal = refusal_of([&] { derivatives(solver, state, wrong); });
     CHECK_THAT(refusal.message, Catch::Contains(" weights for "));
   }
+  const Refusal refusal = refusal_of([&] { form_derivatives(held.assembly(), held.springs, {}, {}); });
+  CHECK_THAT(refusal.message, Catch::Contains("motions of 0 discs"));
 }

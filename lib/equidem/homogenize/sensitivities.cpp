@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/contact/shape_derivatives.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
@@ -99,6 +98,12 @@ void refuse_shapes(const Assembly& assembly, const ContactSprings& springs) {
               "Write prestress = \"off\" in [effects]");
 }
 
+/// The upper half is that below the diagonal.
+void mirror(Matrix3& symmetric) {
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < a; ++b) symmetric[b][a] = symmetric[a][b];
+}
+
 /// Whether each contact point divides the distance as the radii do.
 bool points_by_radii(const Assembly& assembly) {
   return std::ranges::all_of(assembly.contacts, [&](const Contact& c) {
@@ -123,7 +128,7 @@ ShapeSensitivities shape_sensitivities(const Assembly& assembly, const ContactSp
     const double r_i = assembly.radii[contact.i], r_j = assembly.radii[contact.j];
     const double per_radius = norm(branch) / ((r_i + r_j) * (r_i + r_j));
     for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t b = 0; b < 3; ++b) {
+      for (std::size_t b = 0; b <= a; ++b) {
         const EndMotions of_a = end_motions(result, contact, a), of_b = end_motions(result, contact, b);
         const auto [by_branch, by_point] =
             energy_by_shape(frame, branch, springs[c],
@@ -140,7 +145,15 @@ ShapeSensitivities shape_sensitivities(const Assembly& assembly, const ContactSp
       }
     }
   }
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    mirror(found.by_position[d][0]), mirror(found.by_position[d][1]);
+    if (!found.by_radius.empty()) mirror(found.by_radius[d]);
+  }
   return found;
+}
+
+bool has_shape_sensitivities(const Assembly& assembly, const ContactSprings& springs) {
+  return assembly.periodic() && assembly.contact_arms.empty() && !springs.prestressed();
 }
 
 Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities,

@@ -9,7 +9,7 @@
 ///   dC_ab/dkN_c = n_a n_b/A,   dC_ab/dkT_c = s_a s_b/A,   dC_ab/dkM_c = w_a w_b/A.
 ///
 /// In the same way places and radii count by what they do to stretches and slips while the fluctuations stay
-/// (shape_derivatives.hpp).
+/// (linear_spring.hpp).
 ///
 /// Without forces at rest C = sum kN dC/dkN + kT dC/dkT + kM dC/dkM (Euler, C is homogeneous in the springs).
 #pragma once
@@ -46,6 +46,9 @@ struct ShapeSensitivities {
 ///         contact points are off the line of centres, or forces at rest count
 ShapeSensitivities shape_sensitivities(const Assembly& assembly, const ContactSprings& springs,
                                        const EffectiveStiffness& result);
+
+/// Whether shape_sensitivities takes the assembly and its springs.
+bool has_shape_sensitivities(const Assembly& assembly, const ContactSprings& springs);
 
 /// The change of the stiffness where the springs of a contact grow by a common factor, over its change, Pa.
 Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities, std::size_t contact);

@@ -1,17 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/adjoint.hpp"
 
+#include <utility>
+
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/contact/shape_derivatives.hpp"
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
 
-void check_count(const char* what, std::size_t given, std::size_t expected) {
+void check_count(const char* of_what, std::size_t given, std::size_t expected) {
   if (given == 0 || given == expected) return;
-  bad_input(fmt::format("{} weights for {} {}", given, expected, what), "each has one", "Give as many, or none");
+  bad_input(fmt::format("{} weights for {} {}", given, expected, of_what), "each has one", "Give as many, or none");
+}
+
+/// The sum over contacts of k (D a)(D b - w), differentiated. \param weights w, per contact; empty: 0
+SpringAndPlaceDerivatives differentiated(const Assembly& assembly, const ContactSprings& springs,
+                                         std::span<const DiscMotion> a, std::span<const DiscMotion> b,
+                                         std::span<const ContactForce> weights) {
+  const std::size_t contacts = assembly.contacts.size();
+  SpringAndPlaceDerivatives found{.by_kN = std::vector<double>(contacts),
+                                  .by_kT = std::vector<double>(contacts),
+                                  .by_kM = std::vector<double>(springs.bends() ? contacts : 0),
+                                  .by_position = {}};
+  if (assembly.contact_arms.empty() && !springs.prestressed()) found.by_position.resize(assembly.size());
+  for (std::size_t c = 0; c < contacts; ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const ContactFrame frame = frame_of(assembly, c);
+    const EndMotions ends_a{a[contact.i], a[contact.j]}, ends_b{b[contact.i], b[contact.j]};
+    const ContactDeformation of_a = deformation(frame, ends_a.i, ends_a.j);
+    ContactDeformation of_b = deformation(frame, ends_b.i, ends_b.j);
+    if (!weights.empty()) of_b.normal -= weights[c].normal, of_b.tangential -= weights[c].tangential;
+    found.by_kN[c] = of_a.normal * of_b.normal;
+    found.by_kT[c] = of_a.tangential * of_b.tangential;
+    if (!found.by_kM.empty()) found.by_kM[c] = (ends_a.j.theta - ends_a.i.theta) * (ends_b.j.theta - ends_b.i.theta);
+    if (found.by_position.empty()) continue;
+    const Vec2 change =
+        energy_by_shape(frame, assembly.branch(contact), springs[c], {ends_a, ends_b, of_a, of_b}).by_branch;
+    found.by_position[contact.i] -= change;
+    found.by_position[contact.j] += change;
+  }
+  return found;
 }
 
 /// g + D^T k w as loads on discs.
@@ -48,37 +79,26 @@ double value_of(const Equilibrium& state, const Measure& measure) {
 
 }  // namespace
 
+SpringAndPlaceDerivatives form_derivatives(const Assembly& assembly, const ContactSprings& springs,
+                                           std::span<const DiscMotion> a, std::span<const DiscMotion> b) {
+  for (const std::span<const DiscMotion>& motions : {a, b}) {
+    if (motions.size() == assembly.size()) continue;
+    bad_input(fmt::format("motions of {} discs for an assembly of {}", motions.size(), assembly.size()),
+              "each disc has one", "Give as many");
+  }
+  return differentiated(assembly, springs, a, b, {});
+}
+
 MeasureDerivatives derivatives(EquilibriumSolver& solver, const Equilibrium& state, const Measure& measure) {
   const Assembly& assembly = solver.assembly();
-  const ContactSprings& springs = solver.springs();
-  const std::size_t contacts = assembly.contacts.size();
   check_count("discs", measure.motions.size(), assembly.size());
-  check_count("contacts", measure.forces.size(), contacts);
-  const Equilibrium adjoint = solver.solve_held(virtual_loads(solver, measure));
-  MeasureDerivatives found{.value = value_of(state, measure),
-                           .by_kN = std::vector<double>(contacts),
-                           .by_kT = std::vector<double>(contacts),
-                           .by_kM = std::vector<double>(solver.effects().bending ? contacts : 0),
-                           .by_load = adjoint.motions,
-                           .by_position = {}};
-  if (assembly.contact_arms.empty() && !springs.prestressed()) found.by_position.resize(assembly.size());
-  for (std::size_t c = 0; c < contacts; ++c) {
-    const Contact& contact = assembly.contacts[c];
-    const ContactFrame frame = frame_of(assembly, c);
-    const EndMotions u{state.motions[contact.i], state.motions[contact.j]};
-    const EndMotions l{adjoint.motions[contact.i], adjoint.motions[contact.j]};
-    const ContactDeformation of_u = deformation(frame, u.i, u.j);
-    ContactDeformation of_l = deformation(frame, l.i, l.j);
-    if (!measure.forces.empty())
-      of_l.normal -= measure.forces[c].normal, of_l.tangential -= measure.forces[c].tangential;
-    found.by_kN[c] = -of_l.normal * of_u.normal;
-    found.by_kT[c] = -of_l.tangential * of_u.tangential;
-    if (!found.by_kM.empty()) found.by_kM[c] = -(l.j.theta - l.i.theta) * (u.j.theta - u.i.theta);
-    if (found.by_position.empty()) continue;
-    const Vec2 change = energy_by_shape(frame, assembly.branch(contact), springs[c], {l, u, of_l, of_u}).by_branch;
-    found.by_position[contact.i] += change;
-    found.by_position[contact.j] -= change;
-  }
+  check_count("contacts", measure.forces.size(), assembly.contacts.size());
+  Equilibrium adjoint = solver.solve_held(virtual_loads(solver, measure));
+  MeasureDerivatives found{differentiated(assembly, solver.springs(), state.motions, adjoint.motions, measure.forces),
+                           value_of(state, measure), std::move(adjoint.motions)};
+  for (std::vector<double>* each : {&found.by_kN, &found.by_kT, &found.by_kM})
+    for (double& value : *each) value = -value;
+  for (Vec2& value : found.by_position) value = -value;
   return found;
 }
 

@@ -1,20 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Derivatives of what is measured of an equilibrium, all of them by one more solution with the factor that exists.
+/// Derivatives of what follows from the stiffness matrix by springs, loads and places, without another factorization.
 ///
-/// A number q that is a weighted sum of motions u (weights g) and of deformations D u of contacts times their springs k
-/// (weights w of the forces) changes with the springs, the loads f and the geometry by
+/// The form a . K b of two motions, with the deformations D a, D b of contacts and their springs k, changes by
+///
+///   d(a . K b) = sum_c dk (D a)(D b) + k (dD a)(D b) + k (D a)(dD b).
+///
+/// A natural frequency of the mode a, which is unique and has the modal mass 1, changes by d(omega²) = d(a . K a).
+///
+/// A number q that is a weighted sum of the motions u of an equilibrium (weights g) and of the forces of contacts
+/// (weights w) changes with the springs, the loads f and the geometry by
 ///
 ///   dq = lambda . df - sum_c [dk (D lambda - w)(D u) + k (dD lambda)(D u) + k (D lambda - w)(dD u)],
 ///
 /// where K lambda = g + D^T k w: lambda is the state under the weights as loads, with supports that stay.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "equidem/statics/equilibrium.hpp"
 
 namespace equidem {
+
+/// Derivatives of a number, in its unit over that of the parameter.
+struct SpringAndPlaceDerivatives {
+  std::vector<double> by_kN, by_kT;  ///< per contact, by Pa
+  std::vector<double> by_kM;         ///< per contact, by N; empty where contacts do not bend
+  /// Per disc, by m, while levers keep their shares of the distance, springs and contacts what they are; empty where
+  /// contact points are off the line of centres, or forces at rest count.
+  std::vector<Vec2> by_position;
+};
+
+/// Of a . K b, N. \param a, b per disc
+/// \throws Error (bad_input) where they are motions of another number of discs
+SpringAndPlaceDerivatives form_derivatives(const Assembly& assembly, const ContactSprings& springs,
+                                           std::span<const DiscMotion> a, std::span<const DiscMotion> b);
 
 /// The weights of a measured number; those of held components and of rotations that are no unknowns do not count.
 struct Measure {
@@ -22,15 +43,10 @@ struct Measure {
   std::vector<ContactForce> forces;  ///< per contact: dq/dN and dq/dT; empty: none
 };
 
-/// Derivatives of q, in its unit over that of the parameter.
-struct MeasureDerivatives {
-  double value = 0;                  ///< q
-  std::vector<double> by_kN, by_kT;  ///< per contact, by Pa
-  std::vector<double> by_kM;         ///< per contact, by N; empty where contacts do not bend
-  std::vector<DiscMotion> by_load;   ///< per disc, by N/m of force and N of moment
-  /// Per disc, by m, while levers keep their shares of the distance, loads and weights what they are; empty where
-  /// contact points are off the line of centres, or forces at rest count.
-  std::vector<Vec2> by_position;
+/// Derivatives of q; those by places leave loads and weights what they are.
+struct MeasureDerivatives : SpringAndPlaceDerivatives {
+  double value = 0;                 ///< q
+  std::vector<DiscMotion> by_load;  ///< per disc, by N/m of force and N of moment
 };
 
 /// \param state of this solver

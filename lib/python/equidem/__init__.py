@@ -22,8 +22,8 @@ from .errors import BadInput, ComputationFailed, EquidemError, Interrupted
 from .result import Result
 from .simulation import Frame, Simulation
 from .springs import Springs
-from .statics import (Factor, StrengthSample, calibrate, factorize, homogenize, solve, stability, stiffness_matrix,
-                      tension_test)
+from .statics import (Factor, StrengthSample, calibrate, factorize, form_derivatives, homogenize, solve, stability,
+                      stiffness_matrix, tension_test)
 from .sweep import pack, pack_discs, run, simulation, study, sweep
 
 _MOST_THREADS = 1024
@@ -31,9 +31,10 @@ __version__: str = _core.version
 
 __all__ = [
     "Assembly", "BadInput", "Case", "ComputationFailed", "EquidemError", "Factor", "Frame", "Interrupted", "Result",
-    "Simulation", "Springs", "StrengthSample", "assembly", "calibrate", "delaunay", "factorize", "hexagonal",
-    "homogenize", "pack", "pack_discs", "plot", "read", "run", "set_threads", "show_progress", "simulation", "solve",
-    "square", "stability", "stiffness_matrix", "study", "sweep", "tension_test", "threads", "triangulated",
+    "Simulation", "Springs", "StrengthSample", "assembly", "calibrate", "delaunay", "factorize", "form_derivatives",
+    "hexagonal", "homogenize", "pack", "pack_discs", "plot", "read", "run", "set_threads", "show_progress",
+    "simulation", "solve", "square", "stability", "stiffness_matrix", "study", "sweep", "tension_test", "threads",
+    "triangulated",
 ]
 
 

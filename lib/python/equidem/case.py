@@ -236,7 +236,9 @@ class Case:
 
         Arrays: fluctuations.xx.displacements, ... for the unit mean strains xx, yy and xy. With
         ``sensitivities=True`` the derivatives of the stiffness by the springs of each contact, dC_dkN and dC_dkT
-        (contacts, 3, 3) and, where contacts bend, dC_dkM in 1/m². With the table
+        (contacts, 3, 3) and, where contacts bend, dC_dkM in 1/m²; of periodic cells of discs without forces at rest
+        also dC_dx and dC_dy (n, 3, 3) in Pa/m by the positions, with contact points that divide the distance as before,
+        and, where they divide it as the radii do, dC_dradius. With the table
         `viscoelastic` also viscoelastic.frequencies (n) in Hz and, complex, viscoelastic.shear_moduli,
         .bulk_moduli_2d and .young_moduli (plane strain) in Pa, .poisson_ratios (plane strain), (n) each, and
         .stiffnesses (n, 9) in Pa by rows.

@@ -66,7 +66,7 @@ def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = 
     Parameters
     ----------
     sensitivities : bool
-        Whether to return the derivatives of the stiffness by the springs of each contact.
+        Whether to return the derivatives of the stiffness by the springs of each contact and by positions and radii.
     """
     return Case(assembly=cell, springs=springs, **tables).homogenize(accuracy=accuracy, sensitivities=sensitivities)
 
@@ -130,6 +130,32 @@ class Factor:
         arrays["supported_discs"] = parts[0][1]["supported_discs"]
         return Result(values, arrays, self.assembly)
 
+    def derivatives(self, loads: npt.ArrayLike, *, motions: npt.ArrayLike | None = None,
+                    forces: npt.ArrayLike | None = None) -> Result:
+        """Derivatives of a measured number q, a weighted sum over the equilibrium under `loads`, by every spring, load
+        and position: one more solution with the factor, for the weights as loads (adjoint.hpp).
+
+        Parameters
+        ----------
+        loads : array (n, 2) or (n, 3)
+            N/m and N, as of `solve`.
+        motions : array (n, 2) or (n, 3), optional
+            Weights of displacements and rotations in q.
+        forces : array (contacts, 2), optional
+            Weights of the normal and tangential forces of contacts in q.
+
+        Returns
+        -------
+        Result
+            value (q), by_kN, by_kT (contacts) by Pa, by_kM (contacts) by N where contacts bend, by_force (n, 2) by N/m,
+            by_moment (n) by N, and by_position (n, 2) by m, while springs, loads and weights stay what they are and
+            contact points divide the distance as before: absent off the line of centres and with forces at rest.
+        """
+        n, contacts = len(self.assembly), len(self.assembly.contacts)
+        weights = np.zeros((contacts, 2)) if forces is None else floats("forces", forces, (contacts, 2))
+        return Result(*self._native.derivatives(_with_turns("loads", loads, n), _with_turns("motions", motions, n),
+                                                np.ascontiguousarray(weights)), self.assembly)
+
 
 def factorize(assembly: Assembly, springs: Any = None, supports: Iterable[Tables] = (), *, error_bound: bool = False,
               **tables: Any) -> Factor:
@@ -150,6 +176,38 @@ def factorize(assembly: Assembly, springs: Any = None, supports: Iterable[Tables
         Supports that leave a motion free, a mechanism (named), groups and discs that do not exist.
     """
     return Factor(assembly, Case(assembly=assembly, springs=springs, supports=supports, **tables), error_bound)
+
+
+def form_derivatives(assembly: Assembly, springs: Any, a: npt.ArrayLike, b: npt.ArrayLike | None = None,
+                     **tables: Any) -> Result:
+    """Derivatives of a . K b, N, by every spring and position, for two motions and the stiffness matrix K.
+
+    Of a natural frequency omega with the mode a, which has the modal mass 1 (``stability(...).modes["0"]``), they are
+    those of omega²; where frequencies coincide these have none.
+
+    Parameters
+    ----------
+    a, b : array (n, 2) or (n, 3)
+        Displacements in m and rotations in rad; b left out: a.
+
+    Returns
+    -------
+    Result
+        by_kN, by_kT, by_kM and by_position as of `Factor.derivatives`.
+    """
+    n = len(assembly)
+    first = _with_turns("a", a, n)
+    second = first if b is None else _with_turns("b", b, n)
+    case = Case(assembly=assembly, springs=springs, **tables)
+    return Result({}, _core.form_derivatives(*case._inputs(), first, second), assembly)
+
+
+def _with_turns(name: str, rows: npt.ArrayLike | None, n: int) -> Floats:
+    """(n, 3): left out, or without a third column, 0."""
+    given = np.zeros((n, 3)) if rows is None else floats(name, rows, (n, 2), (n, 3))
+    if given.shape[1] == 2:
+        given = np.concatenate([given, np.zeros_like(given[:, :1])], axis=1)
+    return np.ascontiguousarray(given)
 
 
 class StrengthSample:

@@ -19,6 +19,7 @@
 #include "equidem/core/given.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/motion/ledger.hpp"
+#include "equidem/statics/adjoint.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 #include "command.hpp"
@@ -125,6 +126,41 @@ py::tuple run_verb(const std::string& verb, const std::string& case_text, const 
   return py::make_tuple(json, arrays, std::move(made), seconds, Delivered{std::move(delivery)});
 }
 
+std::vector<DiscForce> disc_forces(const Floats& rows) {
+  std::vector<DiscForce> forces;
+  for (py::ssize_t d = 0; d < rows.shape(0); ++d) forces.push_back({{rows.at(d, 0), rows.at(d, 1)}, rows.at(d, 2)});
+  return forces;
+}
+
+std::vector<DiscMotion> disc_motions(const Floats& rows) {
+  std::vector<DiscMotion> motions;
+  for (py::ssize_t d = 0; d < rows.shape(0); ++d) motions.push_back({{rows.at(d, 0), rows.at(d, 1)}, rows.at(d, 2)});
+  return motions;
+}
+
+/// by_kN, by_kT, by_kM, by_position: those that there are.
+std::vector<ResultArray> derivative_arrays(SpringAndPlaceDerivatives found) {
+  std::vector<ResultArray> arrays{array_of("by_kN", "", std::move(found.by_kN), 1),
+                                  array_of("by_kT", "", std::move(found.by_kT), 1)};
+  if (!found.by_kM.empty()) arrays.push_back(array_of("by_kM", "", std::move(found.by_kM), 1));
+  if (!found.by_position.empty()) arrays.push_back(array_of("by_position", "", std::move(found.by_position), 2));
+  return arrays;
+}
+
+/// \param a, b motions (n, 3)
+py::dict form_derivatives_of_case(const std::string& case_text, const std::string& case_file,
+                                  const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
+                                  const Floats& a, const Floats& b) {
+  const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
+  const std::vector<DiscMotion> of_a = disc_motions(a), of_b = disc_motions(b);
+  return arrays_of(without_lock([&] {
+    Case resolved = read_case(inputs.case_file(), inputs.overrides());
+    check_taken(resolved, "form_derivatives", entry_named(verbs, "solve", "verb").takes);
+    const Problem problem = prestressed(problem_of(std::move(resolved)));
+    return derivative_arrays(form_derivatives(problem.assembly, problem.springs.springs, of_a, of_b));
+  }));
+}
+
 /// The factorized stiffness matrix of the assembly of a case with its supports.
 class Factor {
  public:
@@ -141,11 +177,7 @@ class Factor {
   }
 
   [[nodiscard]] py::tuple solve(const Floats& loads) {
-    std::vector<DiscForce> forces(problem_->assembly.size());
-    for (std::size_t d = 0; d < forces.size(); ++d) {
-      const auto k = static_cast<py::ssize_t>(d);
-      forces[d] = {{loads.at(k, 0), loads.at(k, 1)}, loads.at(k, 2)};
-    }
+    const std::vector<DiscForce> forces = disc_forces(loads);
     Equilibrium result = without_lock([&] {
       const std::lock_guard lock(mutex_);  // one thread at a time solves
       return solver_->solve(forces);
@@ -159,6 +191,24 @@ class Factor {
     values["unstable_modes"] = result.unstable_modes;
     values["solver"] = result.solver;
     return py::make_tuple(values, arrays_of(state_arrays("", std::make_shared<const Equilibrium>(std::move(result)))));
+  }
+  /// \param loads (n, 3) \param motions weights (n, 3) \param forces weights (contacts, 2)
+  [[nodiscard]] py::tuple derivatives(const Floats& loads, const Floats& motions, const Floats& forces) {
+    const std::vector<DiscForce> acting = disc_forces(loads);
+    Measure measure{.motions = disc_forces(motions), .forces = {}};
+    for (py::ssize_t c = 0; c < forces.shape(0); ++c) measure.forces.push_back({forces.at(c, 0), forces.at(c, 1)});
+    MeasureDerivatives found = without_lock([&] {
+      const std::lock_guard lock(mutex_);
+      return equidem::derivatives(*solver_, solver_->solve(acting), measure);
+    });
+    py::dict values;
+    values["value"] = found.value;
+    const auto by_load = std::make_shared<const std::vector<DiscMotion>>(std::move(found.by_load));
+    std::vector<ResultArray> arrays = derivative_arrays(std::move(found));
+    std::vector<ResultArray> loads_first = motion_arrays("", by_load);
+    loads_first[0].name = "by_force", loads_first[1].name = "by_moment";
+    for (ResultArray& array : loads_first) array.unit = "", arrays.push_back(std::move(array));
+    return py::make_tuple(values, arrays_of(std::move(arrays)));
   }
   [[nodiscard]] std::int64_t unknowns() const { return solver_->unknowns(); }
 
@@ -262,8 +312,10 @@ void bind_cases(py::module_& module) {
                 std::vector<std::string> overrides, bool error_bound) {
                return std::make_unique<Factor>(case_text, case_file, assembly, std::move(overrides), error_bound);
              });
+  module.def("form_derivatives", form_derivatives_of_case);
   py::class_<Factor>(module, "Factor", made_here())
       .def("solve", &Factor::solve)
+      .def("derivatives", &Factor::derivatives)
       .def_property_readonly("unknowns", &Factor::unknowns);
   module.def("steps", [](const std::string& case_text, const std::string& case_file,
                          const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides) {

@@ -717,7 +717,12 @@ int homogenize(const HomogenizeVerb& options) {
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {found, &result.fluctuations[k]}));
   if (arrays_wanted() && harmonic) hand_over(viscoelastic_arrays(harmonic->stiffness));
-  if (arrays_wanted() && found->sensitivities) hand_over(sensitivity_arrays({found, &*found->sensitivities}));
+  if (arrays_wanted() && found->sensitivities) {
+    hand_over(sensitivity_arrays({found, &*found->sensitivities}));
+    const ContactSprings& springs = problem.springs.springs;
+    if (has_shape_sensitivities(problem.assembly, springs))
+      hand_over(shape_arrays(shape_sensitivities(problem.assembly, springs, result)));
+  }
   hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
   return 0;
 }

@@ -164,4 +164,19 @@ std::vector<ResultArray> sensitivity_arrays(const std::shared_ptr<const SpringSe
   return arrays;
 }
 
+std::vector<ResultArray> shape_arrays(const ShapeSensitivities& found) {
+  std::vector<Matrix3> by_x, by_y;
+  for (const auto& [x, y] : found.by_position) by_x.push_back(x), by_y.push_back(y);
+  std::vector<ResultArray> arrays;
+  const auto add = [&](const char* name, std::vector<Matrix3> derivatives) {
+    if (derivatives.empty()) return;
+    arrays.push_back(array_of(name, "Pa/m", std::move(derivatives), 9));
+    arrays.back().matrix_columns = 3;
+  };
+  add("dC_dx", std::move(by_x));
+  add("dC_dy", std::move(by_y));
+  add("dC_dradius", found.by_radius);
+  return arrays;
+}
+
 }  // namespace equidem

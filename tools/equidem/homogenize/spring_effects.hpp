@@ -33,5 +33,7 @@ void draw_sensitivities(const CommonOptions& options, const Problem& problem, co
 
 /// dC_dkN, dC_dkT and, where contacts bend, dC_dkM, in 1/m²: (contacts, 3, 3).
 std::vector<ResultArray> sensitivity_arrays(const std::shared_ptr<const SpringSensitivities>& found);
+/// dC_dx, dC_dy and, where contact points follow the radii, dC_dradius: (discs, 3, 3) in Pa/m.
+std::vector<ResultArray> shape_arrays(const ShapeSensitivities& found);
 
 }  // namespace equidem
