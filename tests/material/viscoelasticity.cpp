@@ -32,6 +32,7 @@ TEST_CASE("a_standard_solid_with_a_stiff_arm_is_a_kelvin_voigt_spring") {
 TEST_CASE("a_maxwell_spring_flows_slowly_and_is_elastic_at_speed") {
   const ViscoelasticSpring maxwell{.model = SpringModel::maxwell, .time = 1 / (2 * std::numbers::pi)};
   CHECK(std::abs(maxwell.factor(1) - Factor(0.5, 0.5)) < 1e-15);
+  CHECK(std::abs(maxwell.factor(2) - Factor(0.8, 0.4)) < 1e-15);  // 2i/(1 + 2i)
   CHECK(maxwell.factor(1e-160).imag() > 0);
   CHECK(std::abs(maxwell.factor(1e200) - 1.0) < 1e-15);
   CHECK(std::abs(maxwell.factor(1e-6) / Factor(0, 1e-6) - 1.0) < 2e-6);

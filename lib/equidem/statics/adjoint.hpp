@@ -32,7 +32,8 @@ struct SpringAndPlaceDerivatives {
   std::vector<Vec2> by_position;
 };
 
-/// Of a . K b, N. \param a, b per disc
+/// Differentiates a . K b, N. Supports are no part of K: components that they hold are those of the motions given.
+/// \param a, b one motion for each disc, m and rad; rotations count where kT or kM resists them
 /// \throws Error (bad_input) where they are motions of another number of discs
 SpringAndPlaceDerivatives form_derivatives(const Assembly& assembly, const ContactSprings& springs,
                                            std::span<const DiscMotion> a, std::span<const DiscMotion> b);
@@ -49,8 +50,11 @@ struct MeasureDerivatives : SpringAndPlaceDerivatives {
   std::vector<DiscMotion> by_load;  ///< per disc, by N/m of force and N of moment
 };
 
-/// \param state of this solver
-/// \throws Error (bad_input) where the weights are of another number of discs or contacts; as EquilibriumSolver::solve
+/// Solves once more with the factor of the solver, for the weights as loads.
+/// What supports prescribe stays, and is no parameter.
+/// \param state of this solver, under the loads at which q is measured
+/// \throws Error (bad_input) where the weights are of another number of discs or contacts, or do work on a mechanism
+///         that is held, so that q is not determined; as EquilibriumSolver::solve
 MeasureDerivatives derivatives(EquilibriumSolver& solver, const Equilibrium& state, const Measure& measure);
 
 }  // namespace equidem

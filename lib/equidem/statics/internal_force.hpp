@@ -51,7 +51,7 @@ using PreciseDeformation = DeformationOf<DoubleDouble>;
 PreciseDeformation precise_deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
                                           const std::optional<Tensor2>& gradient, std::size_t contact);
 
-/// The same in a precise Number, without a mean strain.
+/// Evaluates a contact in a precise Number, without a mean strain.
 /// \param i, j the first components of its discs \param rotations whether they are wanted beside the deformation
 template <typename Number>
 ContactMotionOf<Number> precise_motion_of(const ContactFrame& frame, const PreciseMotion& motion, std::size_t i,

@@ -133,7 +133,7 @@ class Factor:
     def derivatives(self, loads: npt.ArrayLike, *, motions: npt.ArrayLike | None = None,
                     forces: npt.ArrayLike | None = None) -> Result:
         """Derivatives of a measured number q, a weighted sum over the equilibrium under `loads`, by every spring, load
-        and position: one more solution with the factor, for the weights as loads (adjoint.hpp).
+        and position: one more solution with the factor, for the weights as loads.
 
         Parameters
         ----------
