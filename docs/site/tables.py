@@ -7,7 +7,8 @@
     docs/site/tables.py store REPORT FOLDER   each table of a report (Markdown) as FOLDER/HEADING.csv
 
 A table stands between the lines "<!-- table FILE -->" and "<!-- end -->"; FILE is relative to the page. Behind FILE may
-stand "where COLUMN = VALUE", several joined by "and", and ": COLUMN; COLUMN as HEAD; ...", the columns that are shown.
+stand "where COLUMN = VALUE", or "where COLUMN" for rows that have a value there, several joined by "and", and
+": COLUMN; COLUMN as HEAD; ...", the columns that are shown.
 """
 
 import csv
@@ -62,7 +63,7 @@ def shown(page, name, where, columns):
     for column in [column for column, _ in wanted] + [condition[0] for condition in conditions]:
         if column not in head:
             raise Wrong(f"{page.relative_to(SOURCE)}: {name} has no column '{column}'; it has {', '.join(head)}")
-    kept = [row for row in rows if all(row[column] == value for column, value in conditions)]
+    kept = [row for row in rows if all(row[column] == value[0] if value else row[column] for column, *value in conditions)]
     return table([label for _, label in wanted], [[unbroken(row[column]) for column, _ in wanted] for row in kept])
 
 
