@@ -292,6 +292,24 @@ TEST_CASE("a_held_motion_never_falls_and_a_held_load_neither") {
   }
 }
 
+TEST_CASE("a_contact_of_two_groups_is_as_strong_as_given_or_as_the_weaker_of_both") {
+  Assembly chain = chain_of_discs(7, 1);
+  chain.groups["a"] = {{0, 1, 2}, {}};
+  chain.groups["b"] = {{3, 4}, {}};  // contacts: a a, a a, a b, b b, b -, - -
+  const std::vector<OfPair<PairStrengths>> between = {{{"a", "a"}, false, {5, 1}}, {{"b", "b"}, false, {3, 2}}};
+  const ContactStrengths found = contact_strengths(chain, {.tension = 4, .shear = 4, .between = between});
+  CHECK(found.tension == std::vector<double>{5, 5, 3, 3, 3, 4});
+  CHECK(found.shear == std::vector<double>{1, 1, 1, 2, 2, 4});
+  std::vector<OfPair<PairStrengths>> named = between;
+  named.push_back({{"b", "a"}, false, {9, 8}});
+  const ContactStrengths by_size = contact_strengths(
+      chain, {.tension = 4, .shear = 4, .bond_length = BondLength::smaller_diameter, .between = named});
+  CHECK(by_size.tension[2] == 18);
+  CHECK(by_size.shear[2] == 16);
+  named.back().property.shear = -1;
+  CHECK_THROWS_AS(contact_strengths(chain, {.tension = 4, .shear = 4, .between = named}), Error);
+}
+
 TEST_CASE("strengths_follow_the_distribution_of_weibull") {
   const Assembly cell = hexagonal_lattice({.columns = 60, .rows = 60, .radius = 0.5, .periodic = true});
   const ContactStrengths drawn = contact_strengths(cell, {.tension = 2, .shear = 6, .weibull_modulus = 3, .seed = 1});

@@ -247,3 +247,42 @@ TEST_CASE("a_box_gives_a_triangulation_its_number_of_discs_and_reads_back") {
   CHECK(error_of(text, {"assembly.aspect=2"}).find("box and aspect are both given") != std::string::npos);
   CHECK(error_of(text, {"assembly.box=[1e-4, 1e-4]"}).find("assembly.box: 0") != std::string::npos);
 }
+
+TEST_CASE("groups_with_a_share_and_what_is_between_them_read_back_and_are_refused_where_they_contradict") {
+  const std::string mica = "[[group]]\nname = \"mica\"\nshare = 0.5\ncells = 9\nseed = 4\n",
+                    quartz = "[[group]]\nname = \"quartz\"\nshare = 0.5\ncells = 9\nseed = 4\n",
+                    between =
+                        "[[springs.between]]\ngroups = [\"mica\", \"quartz\"]\nacross = true\nkN = 3.0\nkT = 1.0\n",
+                    weak =
+                        "[strength]\ntension = 2.0\nshear = 4.0\n[[strength.between]]\n"
+                        "groups = [\"mica\", \"mica\"]\ntension = 1.0\nshear = 0.0\n";
+  const std::string text = tension_case + mica + quartz + between + weak;
+  for (const Case& c : {parsed(text), parsed(to_toml(parsed(text), "."))}) {
+    REQUIRE(c.groups.size() == 2);
+    CHECK(c.groups[1].share == 0.5);
+    CHECK(c.groups[1].draw == GroupDraw{.cells = 9, .seed = 4});
+    REQUIRE(c.springs_between.size() == 1);
+    CHECK(c.springs_between[0].groups == GroupPair{"mica", "quartz"});
+    CHECK(c.springs_between[0].across);
+    CHECK(c.springs_between[0].property.kN == 3);
+    REQUIRE(c.strength->between.size() == 1);
+    CHECK_FALSE(c.strength->between[0].across);
+    CHECK(c.strength->between[0].property.tension == 1);
+  }
+  const auto refused = [&](const std::string& more, const std::string& words) {
+    const std::string error = error_of(text + more, {});
+    CAPTURE(more, words, error);
+    CHECK(error.find(words) != std::string::npos);
+  };
+  refused("[[springs.between]]\ngroups = [\"quartz\", \"mica\"]\nacross = true\nkN = 1.0\nkT = 1.0\n",
+          "the pair 'quartz', 'mica' is named twice");
+  refused("[[strength.between]]\ngroups = [\"mica\", \"mica\"]\ntension = 1.0\nshear = 1.0\n",
+          "strength.between.groups: the pair 'mica', 'mica' is named twice");
+  refused("[[group]]\nname = \"gold\"\nshare = 0.1\n", "'mica' and 'gold' have shares of different cells or seeds");
+  refused("[[group]]\nname = \"gold\"\ncells = 9\ndiscs = [1]\n", "it is how the share is drawn");
+  refused("[[group]]\nname = \"gold\"\nshare = 0.1\ndiscs = [1]\n", "share and discs are both given");
+  refused("[[springs.between]]\ngroups = \"mica\"\nkN = 1.0\nkT = 1.0\n", "two names in quotes");
+  refused("[[springs.between]]\ngroups = [\"mica\"]\nkN = 1.0\nkT = 1.0\n", "two names in quotes");
+  refused("[[springs.between]]\ngroups = [\"mica\", 3]\nkN = 1.0\nkT = 1.0\n", "two names in quotes");
+  refused("[[springs.between]]\ngroups = [\"mica\", \"mica\"]\nkT = 1.0\n", "springs.between.kN: missing key");
+}

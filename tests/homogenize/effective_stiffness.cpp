@@ -12,6 +12,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/contact/materials.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
@@ -321,4 +322,22 @@ TEST_CASE("a_heap_of_logs_has_the_mean_stress_of_its_lines_of_contacts_however_i
     CHECK(yy == Approx(-11.18146).epsilon(1e-5));
     CHECK(yy / xx == Approx(3).epsilon(1e-9));
   }
+}
+
+TEST_CASE("rows_of_two_materials_are_springs_in_series_across_and_side_by_side_along") {
+  // On a square lattice C_xx is the mean kN along the rows, C_yy the kN across them.
+  Assembly lattice = lattice_cell(false, 4, 6);
+  for (std::int32_t disc = 0; disc < static_cast<std::int32_t>(lattice.size()); ++disc) {
+    const double spacing = 2 * lattice.radii.front();
+    const auto row = std::lround(lattice.centres[static_cast<std::size_t>(disc)].y / spacing);
+    lattice.groups[row % 2 == 0 ? "hard" : "soft"].discs.push_back(disc);
+  }
+  const SpringConstants hard{4e9, 1e9}, soft{1e9, 3e8};
+  const std::vector<OfPair<SpringConstants>> pairs = {{{"hard", "hard"}, false, hard}, {{"soft", "soft"}, false, soft}};
+  const ContactSprings springs(values_of(lattice, {1, 1}, pairs, in_series));
+  const Matrix3 stiffness = effective_stiffness(lattice, springs).stiffness;
+  CAPTURE(stiffness[0], stiffness[1]);
+  CHECK_THAT(stiffness[0][0], Catch::Matchers::WithinRel(0.5 * (hard.kN + soft.kN), 1e-12));
+  CHECK_THAT(stiffness[1][1], Catch::Matchers::WithinRel(2 * hard.kN * soft.kN / (hard.kN + soft.kN), 1e-12));
+  CHECK_THAT(stiffness[0][1], Catch::Matchers::WithinAbs(0, 1e-12 * stiffness[0][0]));
 }

@@ -148,6 +148,7 @@ PUBLIC = {
     "calibrate": lambda **more: eq.calibrate(BLOCK, young_modulus=1e9, poisson_ratio=0.1, **more),
     "delaunay": lambda **more: eq.delaunay(discs=20, radius=1.0, **more),
     "factorize": lambda **more: eq.factorize(BLOCK, (1.0, 0.5), HELD, **more),
+    "fit_springs": lambda **more: eq.fit_springs(BLOCK, (1.0, 0.5), {"K": 1.0}, **more),
     "form_derivatives": lambda **more: eq.form_derivatives(BLOCK, (1.0, 0.5), np.zeros((len(BLOCK), 2)), **more),
     "hexagonal": lambda **more: eq.hexagonal(columns=4, rows=4, radius=1.0, **more),
     "homogenize": lambda **more: eq.homogenize(BLOCK, (1.0, 0.5), **more),

@@ -25,7 +25,7 @@ def test_numbers_have_units_and_meanings():
     assert result.units["plane_strain.young_modulus"] == "Pa" and result.units["displacements"] == "m"
     assert "Poisson" in result.labels["poisson_ratio"]
     assert result["poisson_ratio"] == result.poisson_ratio and "poisson_ratio" in dir(result)
-    with pytest.raises(AttributeError, match="It has status"):
+    with pytest.raises(AttributeError, match="names all that it has"):
         result.poison_ratio
 
 

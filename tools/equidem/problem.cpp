@@ -64,10 +64,10 @@ ExpectedSize expected_size(const AssemblyCase& assembly) {
 }
 
 void add_left_out(Results& results, const LeftOut& left_out) {
+  results.set("left_out", left_out.bodies);
   if (left_out.bodies.empty()) return;
   results.line("left out", joined(left_out.sentences, "; "));
   results.line("", "results number the others from 0 on");
-  results.set("left_out", left_out.bodies);
 }
 
 /// Says by which tolerance contacts were found, and what a larger one would find.
@@ -112,6 +112,14 @@ void add_gaps(Results& results, const GapRange& gaps, bool found) {
   constexpr double noticeable = 0.01;
   results.set("largest_overlap", std::max(0.0, -gaps.smallest)).set("largest_gap", std::max(0.0, gaps.largest));
   if (found || (gaps.smallest > -noticeable && gaps.largest < noticeable)) return;
+  // Bonds as long as a diameter and more: numbers of a list that begins with 1 join discs that lie anywhere.
+  constexpr double far_apart = 1;
+  if (gaps.largest > far_apart)
+    results.warning("warning",
+                    fmt::format("contacts join discs that are up to {} of the sum of their radii apart. Discs "
+                                "are numbered from 0, or by the ids of their file: check that the contacts "
+                                "are too.",
+                                percent(gaps.largest)));
   results.line("");
   if (gaps.smallest > -noticeable) {
     results.note(fmt::format("contacts are bonds: their discs are up to {} of the sum of the radii apart",
@@ -166,11 +174,15 @@ std::string warning_of_wide_region(const Assembly& assembly) {
   const double share = region / least_rectangle(centres, radii).area() - 1;
   const bool is_given = std::abs(assembly.area() / region - 1) > noticeable;
   if (is_given || !(share > noticeable)) return {};
-  const Vec2 x = assembly.centres[loose.front()];
+  Vec2 middle;
+  for (const Vec2& centre : centres) middle += (1 / static_cast<double>(centres.size())) * centre;
+  const std::size_t farthest =
+      *std::ranges::max_element(loose, {}, [&](std::size_t disc) { return norm(assembly.centres[disc] - middle); });
+  const Vec2 x = assembly.centres[farthest];
   return fmt::format(
-      "{} without contacts, the first disc {} at ({:.6g}, {:.6g}) m, {} the region of the sample {} larger: stresses, "
-      "moduli and solid fraction are means over it. Remove {}, or give the file a box.",
-      counted(std::ssize(loose), "disc"), loose.front(), x.x, x.y, loose.size() == 1 ? "makes" : "make", percent(share),
+      "{} without contacts, the farthest disc {} at ({:.6g}, {:.6g}) m, {} the region of the sample {} larger: "
+      "stresses, moduli and solid fraction are means over it. Remove {}, or give the file a box.",
+      counted(std::ssize(loose), "disc"), farthest, x.x, x.y, loose.size() == 1 ? "makes" : "make", percent(share),
       loose.size() == 1 ? "it" : "them");
 }
 

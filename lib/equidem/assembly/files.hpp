@@ -48,9 +48,9 @@ struct AssemblyFileOptions {
 };
 
 /// Read an assembly, or copy the Given<Assembly> of that name. As JSON: `contacts` missing: those of touching_discs, at
-/// least one. The contact point is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see
-/// Contact); off the line of centres "normals": [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see
-/// ContactArms); "springs": [[kN, kT], ...] per contact, "strengths": [[f_t, f_s], ...] in N/m likewise, "forces":
+/// least one. The contact point of given ones is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given
+/// (see Contact); off the line of centres "normals": [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place
+/// (see ContactArms); "springs": [[kN, kT], ...] per contact, "strengths": [[f_t, f_s], ...] in N/m likewise, "forces":
 /// [[N, T], ...] in N/m those that contacts carry at rest, "curvatures": [[kappa_i, kappa_j], ...] in 1/m of their
 /// surfaces; "sections": [[area, polar moment], ...] in m² and m⁴ of bodies that are no discs, each then with the
 /// radius of the disc of equal area; "box": [[x, y], [x, y]], the lower left and the upper right corner of what the

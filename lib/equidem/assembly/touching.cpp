@@ -61,7 +61,8 @@ std::vector<Contact> touching_discs(const Assembly& assembly, double gap_toleran
     const double distance = norm(assembly.branch(contact));
     const double ri = assembly.radii[i], rj = assembly.radii[j];
     if (distance - ri - rj > std::max(rounding_gap * std::min(ri, rj), gap_tolerance * (ri + rj))) continue;
-    contact.lever_i = contact.lever_j = 0.5 * distance;
+    contact.lever_i = distance * (ri / (ri + rj));
+    contact.lever_j = distance - contact.lever_i;
     contacts.push_back(contact);
   }
   std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {

@@ -50,6 +50,10 @@ void check_options(const StrengthOptions& options) {
   if (options.tension) check_strength("strength in tension", *options.tension);
   if (options.shear) check_strength("strength in shear", *options.shear);
   check_friction("friction", options.friction);
+  for (const auto& [groups, across, strengths] : options.between) {
+    check_strength("strength in tension", strengths.tension);
+    check_strength("strength in shear", strengths.shear);
+  }
   if (options.residual_friction) check_friction("residual friction", *options.residual_friction);
   if (options.weibull_modulus) check_positive(*options.weibull_modulus, "Weibull modulus");
 }
@@ -87,9 +91,10 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
               "Remove tension and shear from [strength], or the strengths from the assembly");
   }
   if (own) {
-    if (options.weibull_modulus || options.bond_length != BondLength::none) {
-      bad_input("the strengths are those of the assembly", "a Weibull modulus and a bond length change given ones only",
-                "Remove weibull_modulus and bond_length");
+    if (options.weibull_modulus || options.bond_length != BondLength::none || !options.between.empty()) {
+      bad_input("the strengths are those of the assembly",
+                "a Weibull modulus, a bond length and strengths of groups change given ones only",
+                "Remove weibull_modulus, bond_length and [[strength.between]]");
     }
     result.tension = assembly.contact_tension;
     result.shear = assembly.contact_shear;
@@ -105,13 +110,19 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
     bad_input("the strengths are stresses on facets", "the facets of this assembly are not known",
               "Take bond_length = \"smaller_diameter\", or strengths in N/m");
   }
+  const std::vector<PairStrengths> of_groups =
+      values_of(assembly, PairStrengths{*options.tension, *options.shear}, options.between,
+                [](const PairStrengths& a, const PairStrengths& b) -> PairStrengths {
+                  return {std::min(a.tension, b.tension), std::min(a.shear, b.shear)};
+                });
   Random random(options.seed);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const double share =
         options.weibull_modulus ? std::pow(-std::log1p(-random.uniform()), 1 / *options.weibull_modulus) : 1;
     const double size = share * length_of(assembly, c, options.bond_length);
-    result.tension.push_back(size * *options.tension);
-    result.shear.push_back(size * *options.shear);
+    const PairStrengths of_contact = of_groups.empty() ? PairStrengths{*options.tension, *options.shear} : of_groups[c];
+    result.tension.push_back(size * of_contact.tension);
+    result.shear.push_back(size * of_contact.shear);
   }
   const double modulus = options.weibull_modulus.value_or(std::numeric_limits<double>::infinity());
   check_strengths(result,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/materials.hpp"
 #include "equidem/core/names.hpp"
 
 namespace equidem {
@@ -42,6 +43,11 @@ struct EnumNames<AfterBreaking> {
   static constexpr NamedValue<AfterBreaking> list[] = {{gone, "gone"}, {frictional, "frictional"}};
 };
 
+/// Strengths of the contacts of two groups.
+struct PairStrengths {
+  double tension = 0, shear = 0;  ///< >= 0, N/m; with a bond length Pa
+};
+
 struct StrengthOptions {
   std::optional<double> tension = {};  ///< f_t >= 0, N/m; with a bond length Pa
   std::optional<double> shear = {};    ///< f_s >= 0, likewise
@@ -54,6 +60,8 @@ struct StrengthOptions {
   AfterBreaking after_breaking = AfterBreaking::gone;
   /// mu >= 0 of contacts without a bond, where they are frictional. None: `friction`.
   std::optional<double> residual_friction = {};
+  /// Of pairs of groups; one that is not named is as strong as the weaker inside of either group.
+  std::vector<OfPair<PairStrengths>> between = {};
 };
 
 /// A contact with the forces N (tension positive) and T breaks in tension where N >= tension, in shear where |T| >=
@@ -66,7 +74,7 @@ struct ContactStrengths {
 
 /// Strengths of the assembly itself, where it has some, are taken as they are.
 /// \throws Error (bad_input) where neither the options nor the assembly give strengths, where both do, where a number
-///         is out of range, or where facets are asked for and not known
+///         is out of range, where facets are asked for and not known, or as Materials
 ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptions& options);
 
 /// A straight cut.

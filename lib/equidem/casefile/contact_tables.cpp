@@ -50,6 +50,24 @@ std::string head_of_file(const std::string& table, const std::string& title, con
   return out + fmt::format("schema = \"{}\"\ntitle = {}\n\n[{}]\n", schema_of(table), toml_text(title), table);
 }
 
+constexpr const char *normal_spring = "normal spring",
+                     *tangential_spring =
+                         "tangential spring; 0: none; negative: a static answer exists for small ones only",
+                     *strengths_of_contact =
+                         "a contact breaks where its normal force reaches tension, of a bond of colliding bodies with "
+                         "what its moment adds at the outer fibre, or where |T| reaches shear - friction N, N positive "
+                         "in tension; left out: the assembly gives strengths",
+                     *unit_of_strength = "N/m (with bond_length: Pa)";
+
+/// The groups of [[springs.between]] and [[strength.between]].
+template <class Property>
+std::vector<Key<OfPair<Property>>> pair_keys() {
+  using P = OfPair<Property>;
+  return {
+      key("groups", &P::groups, required, "the two groups, of [[group]] or of the assembly; twice the same: inside it"),
+      key("across", &P::across, "only contacts between two cells of [[group]], as those between grains of a rock")};
+}
+
 }  // namespace
 
 std::vector<Key<SpringsTable>> springs_keys() {
@@ -60,9 +78,9 @@ std::vector<Key<SpringsTable>> springs_keys() {
   const auto of_packings = only_in({CaseKind::packing}), of_assemblies = only_in({CaseKind::assembly});
   return {
       key("kN", &S::constants, &SpringConstants::kN, or_instead({"shear_wave_speed"}, how_stiff), unit("Pa"), positive,
-          "normal spring"),
+          normal_spring),
       key("kT", &S::constants, &SpringConstants::kT, or_instead({"shear_wave_speed"}, how_stiff), unit("Pa"),
-          "tangential spring; 0: none; negative: a static answer exists for small ones only"),
+          tangential_spring),
       key("shear_wave_speed", &S::shear_wave_speed, of_packings, unit("m/s"), positive,
           only_with({"poisson_ratio"}, how_stiff), "Vs: kT = pi/4 rho Vs², kN = pi/4 rho Vp²"),
       key("poisson_ratio", &S::poisson_ratio, of_packings, between(-1, 0.5), only_with({"shear_wave_speed"}, how_stiff),
@@ -80,6 +98,14 @@ std::vector<Key<SpringsTable>> springs_keys() {
       key("bond_width", &S::bending, &B::bond_width, of_assemblies, not_negative,
           "width w of a bond over the diameter of its smaller disc: contacts have kM = kN w²/12, the bending stiffness "
           "of a parallel bond")};
+}
+
+std::vector<Key<OfPair<SpringConstants>>> springs_between_keys() {
+  using P = OfPair<SpringConstants>;
+  std::vector<Key<P>> keys = pair_keys<SpringConstants>();
+  keys.push_back(key("kN", &P::property, &SpringConstants::kN, required, unit("Pa"), positive, normal_spring));
+  keys.push_back(key("kT", &P::property, &SpringConstants::kT, required, unit("Pa"), tangential_spring));
+  return keys;
 }
 
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder) {
@@ -114,11 +140,8 @@ std::vector<Key<StrengthOptions>> strength_keys(CaseKind kind) {
   const auto of_assemblies = only_in({CaseKind::assembly});
   std::vector<std::string> lengths = names_of<BondLength>();
   if (kind == CaseKind::colliding) std::erase(lengths, to_string(BondLength::facet));
-  return {key("tension", &S::tension, unit("N/m (with bond_length: Pa)"), not_negative,
-              "a contact breaks where its normal force reaches it, of a bond of colliding bodies with what its moment "
-              "adds at the outer fibre; left out: the assembly gives strengths"),
-          key("shear", &S::shear, unit("N/m (with bond_length: Pa)"), not_negative,
-              "a contact breaks where |T| reaches shear - friction N, N positive in tension"),
+  return {key("tension", &S::tension, unit(unit_of_strength), not_negative, strengths_of_contact),
+          key("shear", &S::shear, unit(unit_of_strength), not_negative, strengths_of_contact),
           key("friction", &S::friction, not_negative, "by how much compression adds to the strength in shear"),
           key("bond_length", &S::bond_length, choices(lengths),
               "the length by which strengths in Pa are multiplied: the edge that the cells of both discs share, or "
@@ -133,6 +156,16 @@ std::vector<Key<StrengthOptions>> strength_keys(CaseKind kind) {
           key("residual_friction", &S::residual_friction, of_assemblies, not_negative,
               when("after_breaking", {"frictional"}),
               "coefficient of friction of contacts without a bond, where they are frictional; left out: friction")};
+}
+
+std::vector<Key<OfPair<PairStrengths>>> strength_between_keys() {
+  using P = OfPair<PairStrengths>;
+  std::vector<Key<P>> keys = pair_keys<PairStrengths>();
+  keys.push_back(key("tension", &P::property, &PairStrengths::tension, required, unit(unit_of_strength), not_negative,
+                     strengths_of_contact));
+  keys.push_back(key("shear", &P::property, &PairStrengths::shear, required, unit(unit_of_strength), not_negative,
+                     strengths_of_contact));
+  return keys;
 }
 
 std::vector<Key<StrengthTargetCase>> strength_target_keys() {
@@ -170,7 +203,7 @@ void check_strength_target(const TomlValue& root) {
   if (target == nullptr) return;
   const TomlValue* strength = root.find("strength");
   if (strength == nullptr) return;
-  for (const char* name : {"tension", "shear"}) {
+  for (const char* name : {"tension", "shear", "between"}) {
     if (const TomlValue* given = strength->find(name); given != nullptr)
       fail_at(*given, "it is given beside [strength_target]",
               "calibrate looks for it; friction, bond_length and weibull_modulus of [strength] are kept",

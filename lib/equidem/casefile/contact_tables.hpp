@@ -15,6 +15,7 @@
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/materials.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/spring_relations.hpp"
 
@@ -73,6 +74,19 @@ void bind_springs(File<F>& file, Arguments... arguments) {
       .keys(springs_keys());
 }
 
+std::vector<Key<OfPair<SpringConstants>>> springs_between_keys();
+
+/// Binds [[springs.between]].
+template <class F, class Link>
+void bind_springs_between(File<F>& file, Link between) {
+  file.table(
+          "springs.between", between, like("springs"),
+          "springs of the contacts of two groups, or inside one. A pair that is not named has those of half a contact "
+          "of each in series, 2 a b/(a + b); contacts inside a group that is not named, or of discs without a group, "
+          "have those of [springs]")
+      .keys(springs_between_keys());
+}
+
 /// The table of a springs file takes the place of its name.
 /// \throws Error (bad_input) with file, line and key: a file that cannot be read, or is of another format
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder);
@@ -102,6 +116,17 @@ void bind_strength(File<F>& file, Link strength) {
              "strengths of the contacts, for quasistatic and calibrate, or of the bonds of colliding bodies, which "
              "without them never break")
       .keys(strength_keys(file.spec().kind));
+}
+
+std::vector<Key<OfPair<PairStrengths>>> strength_between_keys();
+
+/// Binds [[strength.between]].
+template <class F, class Link>
+void bind_strength_between(File<F>& file, Link between) {
+  file.table("strength.between", between, like("strength"),
+             "strengths of the contacts of two groups, or inside one; a pair that is not named has the smaller ones of "
+             "both")
+      .keys(strength_between_keys());
 }
 
 /// The table of a strength file takes the place of its name.

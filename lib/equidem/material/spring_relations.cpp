@@ -43,14 +43,15 @@ void check(const IsotropicMeasures& measures) {
     bad_input(problem,
               fmt::format("by {} it falls with kT/kN, to {:.6g} where kT/kN is infinite", relation.source, lowest),
               fmt::format("Choose a Poisson's ratio above {:.6g}", lowest));
-  bad_input(problem,
-            fmt::format("above {:.6g} it needs kT < 0, here kT/kN = {:.4g} by {}, and no motion of the discs is stable "
-                        "then; {}",
-                        highest, springs->ratio(), relation.source, relation.static_limit),
-            fmt::format(
-                "Choose a Poisson's ratio of at most {:.6g}, allow kT < 0 with static_only = true, or take the kN and "
-                "kT of 'equidem calibrate', which fits this very assembly: others than lattices often reach more",
-                highest));
+  bad_input(
+      problem,
+      fmt::format("above {:.6g} it needs kT < 0, here kT/kN = {:.4g} by {}, and no motion of the discs is stable "
+                  "then; {}",
+                  highest, springs->ratio(), relation.source, relation.static_limit),
+      fmt::format(
+          "Choose a Poisson's ratio of at most {:.6g}, allow kT < 0 with static_only = true, or calibrate a random "
+          "packing or triangulation, which often reaches more",
+          highest));
 }
 
 /// 1 - 4 nu, nu in plane strain; exactly 0 where nu is 1/4 (1/3 in plane stress) to rounding, so that kT = 0 is met

@@ -15,7 +15,7 @@ from .errors import BadInput
 
 
 class Assembly:
-    """Discs, or other bodies, and the contacts that join them; SI units, per metre of depth. It does not change.
+    """Discs, or other bodies, and the contacts that join them; SI units, per metre of depth. It is immutable.
 
     Parameters
     ----------
@@ -27,7 +27,8 @@ class Assembly:
         The two discs i and j of each contact; periodic cells: i, j and by how many periods in x and y the image of j is
         shifted that i touches. Left out: the pairs whose gap is at most `gap_tolerance` times the sum of their radii.
     levers : array (m, 2), optional
-        m, distances of the contact point from the centres of i and j; left out: half the distance of the centres.
+        m, distances of the contact point from the centres of i and j; left out: half the distance of the centres for
+        given contacts, the distance in the ratio of the radii for those that are found.
     cell : (Lx, Ly), optional
         m, the period of a periodic cell.
     gap_tolerance : float

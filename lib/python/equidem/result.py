@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import difflib
 import html
 import json
 import math
@@ -107,7 +108,10 @@ class Result(Mapping[str, Any]):
                          if isinstance(part, Result) and name in part}
                 if parts:
                     return Result(parts)
-            raise AttributeError(f"the result has no '{name}'. It has {', '.join(self._values)}") from None
+            near = difflib.get_close_matches(name, self._values, 3, 0.5)
+            known = " or ".join(f"'{one}'" for one in near)
+            raise AttributeError(f"the result has no '{name}'. {f'Did you mean {known}? ' if near else ''}"
+                                 "list(result) names all that it has") from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)

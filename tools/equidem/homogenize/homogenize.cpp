@@ -249,7 +249,7 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
   }
   out.set("rattlers", r.rattlers)
       .set("discs_removed", r.discs_removed)
-      .set("left_out", r.removed)
+      .set("left_out_parts", r.removed)
       .set("mechanisms", described)
       .set("gear_modes", r.gear_modes)
       .set("local_mechanisms", r.mechanisms)

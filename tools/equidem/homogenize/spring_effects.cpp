@@ -2,6 +2,7 @@
 #include "homogenize/spring_effects.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "equidem/core/text.hpp"
@@ -56,6 +57,38 @@ Results changes_of(const std::string& name, const EffectiveModuli& m, const Modu
       .add("poisson_ratio", "dnu", change.poisson_ratio, "", shown);
 }
 
+/// What the springs of each pair of groups do by one common factor, and where these factors scatter independently.
+void add_pairs(std::vector<Results>& rows, Results& of_kinds, const Problem& problem, const Matrix3& stiffness,
+               const SpringSensitivities& found) {
+  const auto& pairs = problem.resolved.springs_between;
+  if (pairs.empty()) return;
+  const EffectiveModuli moduli = effective_moduli(stiffness);
+  const Materials materials(problem.assembly, pairs);
+  std::vector<Matrix3> sums(pairs.size() + 1);
+  for (std::size_t c = 0; c < problem.assembly.contacts.size(); ++c) {
+    Matrix3& sum = sums[materials.pair_of(c).value_or(pairs.size())];
+    sum = sum + change_by_springs(problem.springs.springs, found, c);
+  }
+  std::vector<Results> by_pair;
+  std::vector<ModuliChange> changes;
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    changes.push_back(change_of_moduli(stiffness, sums[k]));
+    const std::string name = k < pairs.size() ? name_of(pairs[k]) : "other contacts";
+    rows.push_back(changes_of(name, moduli, changes.back()));
+    by_pair.push_back(Results().set("springs", name).append(rows.back()));
+  }
+  const auto root_of_squares = [&](double ModuliChange::*change) {
+    double sum = 0;
+    for (const ModuliChange& of_pair : changes) sum += of_pair.*change * (of_pair.*change);
+    return std::sqrt(sum);
+  };
+  rows.push_back(
+      changes_of("each of these, scattering", moduli,
+                 {root_of_squares(&ModuliChange::bulk_modulus_2d), root_of_squares(&ModuliChange::shear_modulus),
+                  root_of_squares(&ModuliChange::young_modulus), root_of_squares(&ModuliChange::poisson_ratio)}));
+  of_kinds.set("pairs", std::move(by_pair)).set("scatter_of_pairs", rows.back());
+}
+
 }  // namespace
 
 Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {
@@ -70,11 +103,14 @@ Results spring_effects(const Problem& problem, const Matrix3& stiffness, const S
   }
   rows.push_back(changes_of("each contact, scattering", moduli, scatter_of_moduli(springs, stiffness, found)));
   of_kinds.set("scatter", rows.back());
+  add_pairs(rows, of_kinds, problem, stiffness, found);
   Results out;
   out.block(
          "\nchanges of the moduli (plane stress) per relative change of all springs of a kind; standard deviations "
          "per\n"
-         "coefficient of variation of springs that scatter independently from contact to contact, to first order\n")
+         "coefficient of variation of springs that scatter independently, contact by contact or pair by pair, to "
+         "first\n"
+         "order\n")
       .table("", rows);
   return out.set("sensitivities", of_kinds);
 }

@@ -345,17 +345,20 @@ Results of_event(const BreakEvent& event, DrivenBy driven_by) {
   return one;
 }
 
-Results curve_results(const LoadCurve& curve) {
-  return Results().set("motion", curve.motion).set("load", curve.load);
+Results curve_results(const LoadCurve& curve, DrivenBy driven_by) {
+  return Results()
+      .set("motion", curve.motion, unit_of_motion(driven_by))
+      .set("load", curve.load, unit_of_load(driven_by));
 }
 
 void add_events_and_curves(Results& out, const BreakageScene& scene, const EventPath& run) {
   std::vector<Results> events;
-  for (const BreakEvent& event : run.events()) events.push_back(of_event(event, scene.path.driven_by));
+  const DrivenBy driven_by = scene.path.driven_by;
+  for (const BreakEvent& event : run.events()) events.push_back(of_event(event, driven_by));
   out.set("events", std::move(events));
-  out.append(curve_results(curve_of(run)).under("curve"));
-  out.append(curve_results(load_envelope(run)).under("load_envelope"));
-  out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
+  out.append(curve_results(curve_of(run), driven_by).under("curve"));
+  out.append(curve_results(load_envelope(run), driven_by).under("load_envelope"));
+  out.append(curve_results(motion_envelope(run), driven_by).under("motion_envelope"));
 }
 
 /// Strengths, path and control.

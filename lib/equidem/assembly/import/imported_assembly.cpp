@@ -410,7 +410,6 @@ Assembly imported_assembly(const std::filesystem::path& path, std::string_view t
     assembly.gap_tolerance = options.gap_tolerance;
     assembly.contacts = touching_discs(assembly, options.gap_tolerance);
     refuse_particles_in_one_place(rows.particles, assembly, assembly.contacts);
-    for (Contact& contact : assembly.contacts) divide_by_radii(assembly, contact);
   });
   return assembly;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <set>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
@@ -11,6 +12,7 @@
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/materials.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
@@ -55,15 +57,23 @@ DiscGroup discs_of(const GroupCase& wanted, const Assembly& assembly, const std:
 }
 
 void add_groups(Assembly& assembly, const Case& resolved) {
+  std::vector<GroupShare> shares;
+  GroupDraw draw;
   for (std::size_t k = 0; k < resolved.groups.size(); ++k) {
     const GroupCase& wanted = resolved.groups[k];
     if (assembly.groups.contains(wanted.name))
       bad_input_at(resolved.where(fmt::format("group.{}.name", k)),
                    fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
                    "Choose another name");
+    if (wanted.share) {
+      shares.push_back({wanted.name, *wanted.share});
+      draw = wanted.draw;
+      continue;
+    }
     const std::string where = resolved.where(fmt::format("group.{}.{}", k, wanted.box ? "box" : "discs"));
     assembly.groups[wanted.name] = discs_of(wanted, assembly, where);
   }
+  if (!shares.empty()) with_place(resolved.where("group"), [&] { draw_groups(assembly, shares, draw); });
 }
 
 /// Tables that act on a group need an existing group that contains discs.
@@ -92,6 +102,34 @@ std::string described(const MaterialCase& material, const SpringConstants& sprin
   return fmt::format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}. The relation {}", material.moduli.shear_modulus,
                      material.moduli.poisson_ratio, to_string(material.moduli.plane), described(springs, weighting),
                      relation.validity);
+}
+
+/// "; quartz: 120 discs; quartz, quartz: kN = 1e+09 Pa, kT = 5e+08 Pa at 312 contacts"
+std::string described(const std::vector<OfPair<SpringConstants>>& between, const Assembly& assembly) {
+  const Materials materials(assembly, between);
+  std::vector<std::int64_t> counts(between.size(), 0);
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c)
+    if (const auto pair = materials.pair_of(c)) ++counts[*pair];
+  std::set<std::string> names;
+  for (const auto& pair : between) names.insert(pair.groups.begin(), pair.groups.end());
+  std::string text;
+  for (const std::string& name : names)
+    text += fmt::format("; {}: {}", name, counted(std::ssize(group(assembly, name).discs), "disc"));
+  for (std::size_t k = 0; k < between.size(); ++k)
+    text += fmt::format("; {}: kN = {:.6g} Pa, kT = {:.6g} Pa at {}", name_of(between[k]), between[k].property.kN,
+                        between[k].property.kT, counted(counts[k], "contact"));
+  return text;
+}
+
+/// The springs of the case at each contact: those of the two groups of its discs, weighted.
+ContactSprings springs_between(const Case& resolved, const Assembly& assembly) {
+  std::vector<SpringConstants> springs = values_of(assembly, *resolved.springs, resolved.springs_between, in_series);
+  const ContactSprings weights = contact_springs(assembly, {1, 1}, resolved.weighting);
+  for (std::size_t c = 0; c < springs.size(); ++c) {
+    const double weight = weights[c].kN;
+    springs[c] = {weight * springs[c].kN, weight * springs[c].kT};
+  }
+  return ContactSprings(std::move(springs));
 }
 
 }  // namespace
@@ -143,7 +181,7 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
       bad_input_at(resolved.where("assembly.path"), "the assembly has no contacts", "nothing resists its deformation",
                    "Give it contacts");
     }
-    bad_input_at(resolved.where("assembly.path"), "the springs are missing",
+    bad_input_at(resolved.where("springs"), "the springs are missing",
                  resolved.assembly.own_springs
                      ? "neither the case nor the assembly gives any"
                      : "the case gives none, and own_springs = false leaves out those of the assembly",
@@ -156,6 +194,10 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
   }
   const auto built = [&]() -> BuiltSprings {
     if (own) return {contact_springs(assembly, {}, resolved.weighting), {}, "springs of the assembly file"};
+    if (!resolved.springs_between.empty())
+      return {springs_between(resolved, assembly),
+              {},
+              described(*resolved.springs, resolved.weighting) + described(resolved.springs_between, assembly)};
     if (!resolved.material) {
       return {contact_springs(assembly, *resolved.springs, resolved.weighting), *resolved.springs,
               described(*resolved.springs, resolved.weighting)};
@@ -167,7 +209,8 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
     return {contact_springs(assembly, constants, resolved.weighting), constants,
             described(material, constants, resolved.weighting, spring_relation(resolved, assembly).relation)};
   };
-  return with_place(resolved.where(resolved.material ? "material" : "springs"), [&] {
+  const char* table = resolved.material ? "material" : resolved.springs_between.empty() ? "springs" : "springs.between";
+  return with_place(resolved.where(table), [&] {
     BuiltSprings result = built();
     result.springs = bending_springs(assembly, result.springs, resolved.bending);
     if (resolved.bending.kM) result.report += fmt::format(", kM = {:.6g} N", *resolved.bending.kM);

@@ -65,7 +65,7 @@ std::vector<Key<ViscoelasticCase>> viscoelastic_keys() {
           "it, k (1 + arm i x/(1 + i x)); table: by path",
       tau = "viscosity of the dashpot over the stiffness of its spring (of the arm: over that of the arm)",
       arm = "spring of the Maxwell arm over kN, over kT",
-      range_of_frequencies = "frequencies between these, evenly spaced over their logarithm";
+      range_of_frequencies = "five frequencies in a decade between these, evenly spaced over their logarithm";
   return {
       key("normal", &V::springs, &L::normal, &S::model, model),
       key("tangential", &V::springs, &L::tangential, &S::model, model),
@@ -83,8 +83,7 @@ std::vector<Key<ViscoelasticCase>> viscoelastic_keys() {
       key("lowest", &V::lowest, unit("Hz"), positive, only_with({"highest"}, "a range has two ends"),
           range_of_frequencies),
       key("highest", &V::highest, unit("Hz"), positive, only_with({"lowest"}, "a range has two ends"),
-          range_of_frequencies),
-      key("per_decade", &V::per_decade, from(1, 100), "frequencies in a decade")};
+          range_of_frequencies)};
 }
 
 void complete_viscoelastic(const TomlValue& root, ViscoelasticCase& viscoelastic) {
@@ -116,6 +115,7 @@ void bind_assembly(File<CaseTables>& file) {
   made.emplace_back("delaunay");
   Words kinds = made;
   for (const char* kind : {"packing", "file"}) kinds.emplace_back(kind);
+  const std::string counts_of_lattice = "discs in the longest row, and number of rows; " + lattice_counts();
   using A = AssemblyCase;
   using L = LatticeOptions;
   using D = DelaunayOptions;
@@ -136,9 +136,8 @@ void bind_assembly(File<CaseTables>& file) {
                "a "
                "box by [packing], its walls left out; file: read from a file; others: lattices of equal touching "
                "discs"),
-           key("columns", &A::lattice, &L::columns, required, from(1, 1e6), when("kind", lattices),
-               "discs in the longest row; " + lattice_counts()),
-           key("rows", &A::lattice, &L::rows, required, from(1, 1e6), when("kind", lattices), "number of rows"),
+           key("columns", &A::lattice, &L::columns, required, from(1, 1e6), when("kind", lattices), counts_of_lattice),
+           key("rows", &A::lattice, &L::rows, required, from(1, 1e6), when("kind", lattices), counts_of_lattice),
            key_with<A, double>(
                "radius",
                [](A& a, const double& radius) {
@@ -196,8 +195,8 @@ void bind_assembly(File<CaseTables>& file) {
            key("levers", &A::levers,
                "where the contact points of discs lie between their centres, also in place of levers of the file; " +
                    help_of(EnumNames<ContactPoints>::list) +
-                   "; left out: as made or read. It matters to forces across gaps between unequal "
-                   "discs, and to export"),
+                   "; left out: as made or read. Halfway differs from the others wherever radii do, middle across "
+                   "gaps"),
            key("own_springs", &A::own_springs, when("kind", from_file),
                "true: springs that the file gives are used; false: those of the case, or of calibrate")});
   file.table("assembly.radii", &CaseTables::assembly, &A::delaunay, &D::radii, when("kind", delaunay),
@@ -258,11 +257,21 @@ void bind_supports_and_loads(File<CaseTables>& file) {
              key("gauge", &TensionTest::gauge,
                  "where strain is read: two spacings or a quarter of the block either side of the middle, or side to "
                  "side")});
+  const std::string drawn = "it is how the share is drawn";
   file.table("group", &CaseTables::groups, "discs chosen by name")
-      .keys({key("name", &GroupCase::name, required, "for use in [[support]] and [[load]]"),
-             key("discs", &GroupCase::discs, or_instead({"box"}, "a group is a list of discs, or the discs in a box"),
-                 "counted from 0"),
-             key("box", &GroupCase::box, unit("m"), "the discs with their centre inside")});
+      .keys(
+          {key("name", &GroupCase::name, required, "for use in [[support]], [[load]], [[springs.between]] and others"),
+           key("discs", &GroupCase::discs,
+               or_instead({"box", "share"}, "a group is a list of discs, the discs in a box, or a share of all"),
+               "counted from 0"),
+           key("box", &GroupCase::box, unit("m"), "the discs with their centre inside"),
+           key("share", &GroupCase::share, range({.low = 0, .high = 1, .low_open = true}),
+               "of all discs, at random; groups with a share have no disc in common"),
+           key("cells", &GroupCase::draw, &GroupDraw::cells, from(1, 1e7), only_with({"share"}, drawn),
+               "the share is of whole Voronoi cells of so many random points, the grains of a rock, the same for all "
+               "groups with a share; the discs of each are a group too: cell_0, cell_1, ..."),
+           key("seed", &GroupCase::draw, &GroupDraw::seed, optional, not_negative, only_with({"share"}, drawn),
+               "of the share, the same for all such groups; left out: 1")});
   using S = Support;
   const std::string prescribed = "prescribed motion; true: held at 0; left out: free";
   file.table("support", &CaseTables::supports, "prescribed motion of a group")
@@ -297,13 +306,14 @@ void bind_run(File<CaseTables>& file) {
 
 void bind_breakage(File<CaseTables>& file) {
   bind_strength(file, &CaseTables::strength);
+  bind_strength_between(file, &CaseTables::strength_between);
   file.table("strength_target", &CaseTables::strength_target,
              "strengths of the material, for which calibrate finds those of the contacts")
       .keys(strength_target_keys());
-  const std::string longer = "positive: the cell grows longer along x, along y";
+  const std::string components =
+      "xx, yy positive: the cell grows longer along x, along y; xy: engineering shear strain, 2 e_xy";
   file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
-      .keys({key("xx", &Voigt::xx, longer), key("yy", &Voigt::yy, longer),
-             key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});
+      .keys({key("xx", &Voigt::xx, components), key("yy", &Voigt::yy, components), key("xy", &Voigt::xy, components)});
   file.table(
           "dead_load", &CaseTables::dead_loads, like("load"),
           "forces put on first, which stay while lambda grows, for the verb quasistatic; with frictional contacts they "
@@ -394,6 +404,7 @@ const File<CaseTables>& case_file() {
     made.ask(kinds_with);
     bind_assembly(made);
     bind_springs(made, &CaseTables::springs_table);
+    bind_springs_between(made, &CaseTables::springs_between);
     made.table("viscoelastic", &CaseTables::viscoelastic,
                "dashpots at the springs: complex moduli over frequency (homogenize), motion (run)")
         .keys(viscoelastic_keys());
@@ -564,6 +575,35 @@ void complete_delaunay(const TomlValue& root, DelaunayOptions& options) {
   options.aspect = options.box->x / options.box->y;
 }
 
+/// All groups with a share are drawn together, by the first of them.
+void check_draws(const TomlValue& root, const std::vector<GroupCase>& groups) {
+  const auto first = std::ranges::find_if(groups, [](const GroupCase& group) { return group.share.has_value(); });
+  for (std::size_t k = 0; k < groups.size(); ++k)
+    if (groups[k].share && groups[k].draw != first->draw)
+      fail_at(
+          repeated(root, "group")[k],
+          fmt::format("the groups '{}' and '{}' have shares of different cells or seeds", first->name, groups[k].name),
+          "groups with a share are drawn together, so that none has a disc of another",
+          "Give both the same cells and seed");
+}
+
+/// \param table "springs" or "strength", which has the pairs in [[TABLE.between]]
+template <class Property>
+void check_pairs(const TomlValue& root, const std::string& table, const std::vector<OfPair<Property>>& pairs) {
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [first, second] = std::minmax(pairs[k].groups[0], pairs[k].groups[1]);
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      const auto& other = pairs[earlier];
+      if (other.across != pairs[k].across || std::min(other.groups[0], other.groups[1]) != first ||
+          std::max(other.groups[0], other.groups[1]) != second)
+        continue;
+      fail_at(*repeated(*root.find(table), "between")[k].find("groups"),
+              fmt::format("the pair '{}', '{}' is named twice", pairs[k].groups[0], pairs[k].groups[1]),
+              "one of the two would not count", "Remove one of them");
+    }
+  }
+}
+
 /// Samples take the seeds first, first + 1, ..., each of which a case can have.
 void check_seeds(const TomlValue& root, const std::string& key, std::uint64_t first, std::int64_t samples) {
   constexpr auto most = std::numeric_limits<std::int64_t>::max();
@@ -616,6 +656,10 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   if (tables.material)
     tables.material->moduli = at_key(*root.find("material"), [&] { return moduli_of(tables.material->given); });
   check_names(root, "group");
+  check_draws(root, tables.groups);
+  check_pairs(root, "springs", tables.springs_between);
+  check_pairs(root, "strength", tables.strength_between);
+  if (tables.strength) tables.strength->between = tables.strength_between;
   for (std::size_t k = 0; k < tables.groups.size(); ++k)
     if (const auto& box = tables.groups[k].box) check_box(*repeated(root, "group")[k].find("box"), box->low, box->high);
   for (std::size_t k = 0; k < tables.supports.size(); ++k)
@@ -644,7 +688,7 @@ Viscoelasticity build_viscoelasticity(const Case& resolved, const std::optional<
     if (!given.rows.empty() && !constants) {
       bad_input("a table of springs in Pa is given, and each contact has springs of its own",
                 "it is not known to which of them the table belongs",
-                "Set assembly.own_springs = false and give [springs], or choose other models");
+                "Give one pair of springs in [springs] (own_springs = false of a file), or choose other models");
     }
     const auto fill = [&](ViscoelasticSpring& spring, const std::string& of, double elastic, auto measured) {
       if (spring.model == SpringModel::table) {
@@ -666,11 +710,12 @@ Viscoelasticity build_viscoelasticity(const Case& resolved, const std::optional<
 }
 
 std::vector<double> frequencies_of(const Case& resolved, const Viscoelasticity& springs) {
+  constexpr int frequencies_in_a_decade = 5;
   const ViscoelasticCase& given = *resolved.viscoelastic;
   if (!given.frequencies.empty()) return given.frequencies;
   return with_place(resolved.where("viscoelastic"), [&] {
-    return given.lowest ? logarithmic_frequencies(*given.lowest, *given.highest, given.per_decade)
-                        : frequencies_of_interest(springs, given.per_decade);
+    return given.lowest ? logarithmic_frequencies(*given.lowest, *given.highest, frequencies_in_a_decade)
+                        : frequencies_of_interest(springs, frequencies_in_a_decade);
   });
 }
 

@@ -25,6 +25,7 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/contact/materials.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
@@ -56,7 +57,6 @@ struct ViscoelasticCase {
   std::vector<Row> rows;
   std::vector<double> frequencies;        ///< Hz; empty: by the other members
   std::optional<double> lowest, highest;  ///< Hz
-  int per_decade = 5;
 };
 
 /// The springs over the elastic ones, checked.
@@ -97,11 +97,13 @@ struct AssemblyCase {
   [[nodiscard]] std::uint64_t seed() const { return packing ? packing->seed : delaunay.seed; }
 };
 
-/// [[group]]: discs listed, or those with their centre inside a box.
+/// [[group]]: discs listed, those with their centre inside a box, or a share of all at random.
 struct GroupCase {
   std::string name;
   std::vector<std::int32_t> discs;
   std::optional<Rectangle> box;  ///< m
+  std::optional<double> share;
+  GroupDraw draw;  ///< of the share
 };
 
 /// [[load]] entries that act together.
@@ -169,7 +171,8 @@ struct RunCase : casefile::RunTable {
 /// groups, sufficient supports) are checked when the case is built and solved.
 struct Case : CaseDocument {
   AssemblyCase assembly;
-  std::optional<SpringConstants> springs;  ///< or
+  std::optional<SpringConstants> springs;                ///< or
+  std::vector<OfPair<SpringConstants>> springs_between;  ///< Pa, before weighting
   std::optional<MaterialCase> material;
   std::optional<ViscoelasticCase> viscoelastic;
   SpringWeighting weighting = SpringWeighting::uniform;
@@ -250,6 +253,7 @@ struct CaseTables : Case, MotionTables {
   std::vector<LoadTable> load_tables;
   PackingTables packing_tables;
   std::optional<SpringsTable> springs_table;
+  std::vector<OfPair<PairStrengths>> strength_between;
 };
 
 /// The case file, schema "equidem/1".

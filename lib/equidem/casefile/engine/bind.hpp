@@ -54,6 +54,9 @@ inline constexpr bool is_vector = false;
 template <class T>
 inline constexpr bool is_vector<std::vector<T>> = true;
 
+template <class T>
+inline constexpr bool is_pair_of_names = std::same_as<T, std::array<std::string, 2>>;
+
 /// A rectangle, [x_min, y_min, x_max, y_max].
 template <class T>
 concept BoxLike = requires(T box) {
@@ -81,6 +84,8 @@ constexpr KeyType type_of_key() {
       return KeyType::circles;
     else
       return KeyType::words;
+  } else if constexpr (is_pair_of_names<T>) {
+    return KeyType::two_names;
   } else if constexpr (std::same_as<T, bool>) {
     return KeyType::flag;
   } else if constexpr (std::integral<T>) {
@@ -161,6 +166,8 @@ void assign(T& result, TomlValue& value, const std::filesystem::path& folder) {
   } else if constexpr (is_vector<T>) {
     result.clear();
     for (TomlValue& item : value.items) assign(result.emplace_back(), item, folder);
+  } else if constexpr (is_pair_of_names<T>) {
+    result = {value.items[0].text, value.items[1].text};
   } else if constexpr (std::same_as<T, bool>) {
     result = value.boolean;
   } else if constexpr (std::integral<T>) {

@@ -154,6 +154,12 @@ void check_words(const TomlValue& value, const KeySpec& key) {
   }
 }
 
+void check_two_names(const TomlValue& value, const KeySpec& key) {
+  if (!value.is_array() || value.items.size() != 2) fail_type(value, key);
+  for (const TomlValue& item : value.items)
+    if (item.type != Type::text) fail_type(value, key);
+}
+
 template <Type type>
 void check_type(const TomlValue& value, const KeySpec& key) {
   if (value.type != type) fail_type(value, key);
@@ -187,6 +193,7 @@ void check_bytes(const TomlValue& value, const KeySpec& key) {
 
 constexpr ValueKind kinds[] = {
     {KeyType::text, "text in quotes", "\"...\"", check_type<Type::text>},
+    {KeyType::two_names, "two names in quotes, such as [\"quartz\", \"mica\"]", "[\"...\", \"...\"]", check_two_names},
     {KeyType::choice, "{choices}", "\"{first}\"", check_choice},
     {KeyType::path, "the name of a file, in quotes", "\"FILE\"", check_path},
     {KeyType::flag, "true or false", "true", check_type<Type::boolean>},

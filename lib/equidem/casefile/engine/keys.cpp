@@ -208,6 +208,8 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"springs", "ks", "", "Write kT instead"},
     RemovedKey{"probe", "grains", "", "Write bodies instead"},
     RemovedKey{"run", "scheme", "", "Write integrator instead"},
+    RemovedKey{"viscoelastic", "per_decade", "",
+               "Leave it out, or list the frequencies that are wanted in frequencies"},
     RemovedKey{"ensemble", "confidence", "",
                "Leave it out: intervals are those of 95 %, and samples.csv has every sample"},
     RemovedKey{"output", "csv", "", "Name what is written in files, such as files = ['vtk', 'picture']"},

@@ -38,6 +38,7 @@ namespace equidem::casefile {
 
 enum class KeyType {
   text,
+  two_names,       ///< ["quartz", "mica"], twice the same too
   choice,          ///< one of the words of KeySpec::choices
   path,            ///< of a file, relative to the folder of the case file
   flag,            ///< true | false

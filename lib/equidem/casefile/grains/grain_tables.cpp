@@ -472,11 +472,13 @@ struct CellMotionTable {
 
 std::vector<Key<CellMotionTable>> cell_motion_keys() {
   using M = CellMotionTable;
-  const std::string longer = "rate of the logarithm of the width, of the height";
-  return {
-      key("xx", &M::xx, unit("1/s"), longer), key("yy", &M::yy, unit("1/s"), longer),
-      key("xy", &M::xy, unit("1/s"), "rate of simple shear: the images above move along x at this rate times height"),
-      key("schedule", &M::schedule, "factor of these rates; without one they are constant")};
+  const std::string longer =
+      "rates: xx, yy of the logarithm of the width, of the height; xy of simple shear: the images above move along x "
+      "at "
+      "this rate times height";
+  return {key("xx", &M::xx, unit("1/s"), longer), key("yy", &M::yy, unit("1/s"), longer),
+          key("xy", &M::xy, unit("1/s"), longer),
+          key("schedule", &M::schedule, "factor of these rates; without one they are constant")};
 }
 
 /// [cell.servo].

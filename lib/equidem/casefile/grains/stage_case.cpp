@@ -394,22 +394,21 @@ struct UntilTable {
 std::vector<Key<UntilTable>> until_keys() {
   using U = UntilTable;
   using E = StageEnd;
-  const std::string way = "it is that of the distance of two walls, or of the cell";
-  return {
-      key("kinetic", &U::end, &E::kinetic, optional, positive,
-          "at rest: the kinetic energy is at most this share of the elastic one"),
-      key("unbalanced", &U::end, &E::unbalanced, optional, positive,
-          "at rest: the mean unbalanced force of a body, with its moment over its radius, is at most this share of the "
-          "mean contact force"),
-      key("strain", &U::end, &E::strain, optional, positive, only_with({"from", "component"}, way),
-          "change of the distance of two walls over that at the start of the stage; or of a strain of the cell"),
-      key("component", &U::end, &E::of_cell, only_with({"strain"}, way), not_beside({"from"}, way),
-          "of the strain of the periodic cell, as in the histories"),
-      key("from", &U::from, only_with({"to"}, way), "the two walls"),
-      key("to", &U::to, only_with({"strain"}, way), "the two walls"),
-      key("displacement", &U::end, &E::displacement, optional, unit("m"), positive,
-          only_with({"wall"}, "a wall is named that moves"), "way of a wall since the start of the stage"),
-      key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
+  const std::string way = "it is that of the distance of two walls, or of the cell",
+                    at_rest =
+                        "at rest: the kinetic energy is at most this share of the elastic one, or the mean unbalanced "
+                        "force of a body, with its moment over its radius, of the mean contact force";
+  return {key("kinetic", &U::end, &E::kinetic, optional, positive, at_rest),
+          key("unbalanced", &U::end, &E::unbalanced, optional, positive, at_rest),
+          key("strain", &U::end, &E::strain, optional, positive, only_with({"from", "component"}, way),
+              "change of the distance of two walls over that at the start of the stage; or of a strain of the cell"),
+          key("component", &U::end, &E::of_cell, only_with({"strain"}, way), not_beside({"from"}, way),
+              "of the strain of the periodic cell, as in the histories"),
+          key("from", &U::from, only_with({"to"}, way), "the two walls"),
+          key("to", &U::to, only_with({"strain"}, way), "the two walls"),
+          key("displacement", &U::end, &E::displacement, optional, unit("m"), positive,
+              only_with({"wall"}, "a wall is named that moves"), "way of a wall since the start of the stage"),
+          key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
 }
 
 /// The shaking of a stage; its walls move by it.

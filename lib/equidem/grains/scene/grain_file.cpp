@@ -228,13 +228,14 @@ GrainRows read_grains(const std::filesystem::path& path, std::optional<double> d
 
 namespace {
 
-constexpr auto as_springs = "back to the distance at the start, and across it; 0 in the thesis: bonds creep";
+constexpr auto as_springs = "back to the distance at the start, and across it; 0 in the thesis: bonds creep",
+               as_dashpots =
+                   "C_n along the line of centres, where a pair stops as exp(-C_n t/m), m the reduced mass, and a "
+                   "steady pull N makes it creep at N/C_n; C_s across it, at the point of the bond: no friction limits "
+                   "it";
 constexpr BondProperty properties_of_bonds[] = {
-    {"normal_dashpot", &GrainBond::normal_dashpot, "N s/m (discs: per m of depth)",
-     "C_n along the line of centres: a pair stops as exp(-C_n t/m), m the reduced mass; a steady pull N makes it creep "
-     "at N/C_n"},
-    {"tangential_dashpot", &GrainBond::tangential_dashpot, "N s/m (discs: per m of depth)",
-     "C_s across it, at the point of the bond; no friction limits it"},
+    {"normal_dashpot", &GrainBond::normal_dashpot, "N s/m (discs: per m of depth)", as_dashpots},
+    {"tangential_dashpot", &GrainBond::tangential_dashpot, "N s/m (discs: per m of depth)", as_dashpots},
     {"rolling_dashpot", &GrainBond::rolling_dashpot, "N m s",
      "against the relative spin; 0 in the thesis: discs roll freely on one another"},
     {"normal_spring", &GrainBond::normal_spring, "N/m (discs: per m of depth)", as_springs},
