@@ -140,6 +140,8 @@ def unconfined(folder, width):
     along, across = read["upper_y_m"] - read["lower_y_m"], read["right_x_m"] - read["left_x_m"]
     shorter, wider = smooth(middle(1 - along / along[0]), 5), smooth(middle(across / across[0] - 1), 5)
     peak = int(numpy.argmax(stress))
+    if stress[-1] > 0.9 * stress[peak]:
+        raise SystemExit(f"{folder}: the run ends before the load falls, so that its largest stress is no strength")
     before = numpy.arange(len(stress)) < peak
     chosen = before & (stress > 0.1 * stress[peak]) & (stress < 0.4 * stress[peak])
     return {"strength": float(stress[peak]), "strain": float(shorter[peak]), **elastic(stress[chosen], shorter[chosen], wider[chosen])}
