@@ -23,8 +23,8 @@ EXAMPLES = sorted((SOURCE / "docs/examples").glob("*.py"))
 TOOL = SOURCE / "tools/notebooks"
 
 
-def test_there_are_ten_examples():
-    assert [int(path.name[:2]) for path in EXAMPLES] == list(range(1, 11))
+def test_there_are_eleven_examples():
+    assert [int(path.name[:2]) for path in EXAMPLES] == list(range(1, 12))
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
