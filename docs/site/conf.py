@@ -37,6 +37,7 @@ napoleon_use_ivar = True
 
 breathe_projects = {"equidem": os.environ["EQUIDEM_DOXYGEN"]}
 breathe_default_project = "equidem"
+breathe_default_members = ("members", "undoc-members")
 
 html_theme = "furo"
 html_title = f"equidem {release}"
@@ -47,8 +48,8 @@ html_show_sourcelink = False
 html_show_copyright = False
 html_show_sphinx = False
 html_show_search_summary = False  # it would fetch pages, which browsers refuse where there is no server
-pygments_style = "tango"
-pygments_dark_style = "monokai"
+pygments_style = "xcode"  # contrasts of at least 4.5:1, as of the dark one
+pygments_dark_style = "github-dark"
 copybutton_selector = "div:not(.highlight-text) > div.highlight > pre"  # not output
 
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_SVG"
@@ -81,8 +82,8 @@ def show_colons(app, what, name, obj, options, lines):
 
 
 def mend_theme(app, failed):
-    """Debian 12's furo 2022.12 has its script in two modules, which browsers load from a server only, and its style
-    sheet lacks the dark colours of readers whose system is dark."""
+    """Debian's furo takes normalize.css from a server; in Debian 12 its script too, in two modules, and its style sheet
+    lacks the dark colours of readers whose system is dark."""
     if failed:
         return
     static = pathlib.Path(app.outdir) / "_static"
@@ -92,7 +93,10 @@ def mend_theme(app, failed):
         script.write_text(spy.read_text(encoding="utf-8") + "\n".join(lines[1:]), encoding="utf-8")
     sheet = static / "styles/furo.css"
     text = sheet.read_text(encoding="utf-8")
+    normal = pathlib.Path("/usr/share/javascript/normalize.css/normalize.css")
+    text = text.replace("@import url(/javascript/normalize.css/normalize.css);",
+                        normal.read_text(encoding="utf-8") if normal.exists() else "")
     dark = re.search(r'body\[data-theme="dark"\] (\{[^}]*--color-background-primary[^}]*\})', text)
     if dark and "prefers-color-scheme" not in text:
         text += f'@media screen and (prefers-color-scheme: dark) {{ body[data-theme="auto"] {dark.group(1)} }}\n'
-        sheet.write_text(text, encoding="utf-8")
+    sheet.write_text(text, encoding="utf-8")

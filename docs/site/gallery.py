@@ -19,7 +19,7 @@ import tempfile
 # Groups of the page: heading, begin of the names of their cases.
 GROUPS = [("Equilibrium", ("abe1996", "cantilever", "delaunay", "restrained", "truss")),
           ("Moduli, springs, stability",
-           ("random_cell", "lab_rock", "free_sample", "ensemble", "viscoelastic", "hexagonal", "column",
+           ("random_cell", "two_minerals", "lab_rock", "free_sample", "ensemble", "viscoelastic", "hexagonal", "column",
             "calibrate")),
           ("Packings", ("pack",)), ("Breakage", ("notched", "frictional")), ("Bonded discs in motion", ("run",)),
           ("Bodies that collide", ("grains",)), ("From a sieve curve to a wave", ("sandstone",)), ("Others", ("",))]
@@ -119,8 +119,8 @@ def page(source, stage, program):
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
         jobs = {case: pool.submit(picture, program, case, folder / f"{case.stem}.png", seconds)
                 for _, cases in groups for case in cases}
-    lines = ["# Cases as pictures", "", "Every case of `data/cases`, drawn by the program. A picture leads to its case "
-             "file, whose comment has more commands.", ""]
+    lines = ["# Cases as pictures", "", "Every case of `data/cases`, drawn by the program; runs that take longer than "
+             f"{seconds:g} s as far as they came. A picture leads to its case file, whose comment has more commands.", ""]
     for heading, cases in groups:
         lines += [f"## {heading}", "", "| | |", "|---|---|"]
         for case in cases:
@@ -129,7 +129,7 @@ def page(source, stage, program):
             (copies / place).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(case, copies / place)
             shown = f"![{title}](files/cases/{case.stem}.png)" if jobs[case].result() else title
-            words = " ".join(["equidem", *command_of(case, command)])
+            words = " ".join(["equidem", *command_of(case, command)]).replace(case.name, f"data/cases/{place}")
             text = f"**{first_sentences(title)}**<br>{first_sentences(said)}<br>`{words}`"
             lines.append(f"| [{shown}](files/data/cases/{place}) | {text} |")
         lines.append("")

@@ -46,7 +46,8 @@ def unbroken(cell):
     """A cell in which no line breaks within a number or between it and its unit."""
     if "`" in cell:
         return cell
-    cell = re.sub(r"(?<=\de)-(?=\d)", "\u2011", cell)
+    cell = re.sub(r"(?<=\de)-(?=\d)|(?<=\d{4})-(?=\d\d)|(?<=\d{4}.\d\d)-(?=\d\d)", "\u2011", cell)
+    cell = cell.replace(" .. ", "\u00a0..\u00a0")
     return re.sub(r"(?<=\d) (?=(?:[µm]?s|[MG]B|%|\d{3})(?![\w]))", "\u00a0", cell)
 
 

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
@@ -43,4 +45,17 @@ TEST_CASE("every_inactive_effect_says_why") {
   CHECK(restrained.report().find("rotation (restrained as asked") != std::string::npos);
   const Effects all = derive_effects(ContactSprings({1.0, 0.5}), Rotation::from_scene);
   CHECK(all.report() == "active: normal springs, tangential springs, rotation.");
+}
+
+TEST_CASE("springs_of_more_or_fewer_contacts_than_the_assembly_has_are_refused") {
+  const Assembly lattice = square_lattice({.columns = 3, .rows = 3, .radius = 1});
+  const std::size_t contacts = lattice.contacts.size();
+  for (const std::size_t given : {std::size_t{1}, contacts - 1, contacts + 1}) {
+    const ContactSprings springs(std::vector<SpringConstants>(given, {1, 0.5}));
+    test::check_refused([&] { derive_effects(lattice, springs, Rotation::from_scene); },
+                        {"springs of " + std::to_string(given), "the assembly has 12", "in the order"});
+  }
+  const ContactSprings bending = ContactSprings({1, 0.5}).with_bending(std::vector<double>(contacts - 1, 1));
+  test::check_refused([&] { derive_effects(lattice, bending, Rotation::from_scene); }, {"bending springs of 11"});
+  CHECK_NOTHROW(derive_effects(lattice, ContactSprings({1, 0.5}).with_bending({1}), Rotation::from_scene));
 }

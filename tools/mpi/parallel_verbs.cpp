@@ -85,6 +85,11 @@ void add_groups(Part& part, const Case& resolved) {
       bad_input_at(resolved.where(fmt::format("group.{}.name", k)),
                    fmt::format("the assembly has a group '{}' of its own", wanted.name), "a name means one group",
                    "Choose another name");
+    if (wanted.share)
+      bad_input_at(resolved.where(fmt::format("group.{}.share", k)),
+                   fmt::format("group '{}' is a share of all discs", wanted.name),
+                   "it is drawn from the whole assembly, of which a rank holds a part",
+                   "Write the assembly into a file ('equidem solve' with output.assembly), and solve that");
     std::vector<std::int64_t> names(wanted.discs.begin(), wanted.discs.end());
     std::ranges::sort(names);
     DiscGroup& group = part.assembly.groups[wanted.name];

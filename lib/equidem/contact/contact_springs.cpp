@@ -73,6 +73,18 @@ std::vector<ContactPrestress> ContactSprings::scaled_prestress(double factor) co
   return result;
 }
 
+void ContactSprings::check_count(std::size_t contacts) const {
+  const auto check = [&](std::size_t given, const char* what) {
+    if (given == contacts) return;
+    bad_input(fmt::format("there are {} of {}, and the assembly has {}", what,
+                          counted(static_cast<std::int64_t>(given), "contact"), contacts),
+              "each contact has its own", "Give as many, in the order of the contacts");
+  };
+  if (!uniform()) check(per_contact_.size(), "springs");
+  if (bending_.size() > 1) check(bending_.size(), "bending springs");
+  if (prestressed()) check(prestress_.size(), "geometric stiffnesses");
+}
+
 double ContactSprings::largest() const {
   const auto larger = [](const SpringConstants& k) { return std::max(std::abs(k.kN), std::abs(k.kT)); };
   double result = uniform() ? larger(uniform_) : 0;

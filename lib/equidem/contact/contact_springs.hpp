@@ -95,6 +95,8 @@ class ContactSprings {
   }
   /// As with_bending takes them.
   [[nodiscard]] const std::vector<double>& bending_springs() const { return bending_; }
+  /// \throws Error (bad_input) where springs, bending springs or prestress of each contact are not of so many contacts
+  void check_count(std::size_t contacts) const;
   /// True with prestress or with some kT < 0: K may be indefinite.
   [[nodiscard]] bool may_be_indefinite() const { return prestressed() || any_negative(); }
   /// Whether some contact has a tangential spring.

@@ -64,6 +64,7 @@ bool resists_rotation_without_tangential(const Assembly& assembly, const Contact
 }
 
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation) {
+  springs.check_count(assembly.contacts.size());
   Effects effects = derive_effects(springs, rotation, resists_rotation_without_tangential(assembly, springs));
   effects.prestress = springs.prestressed();
   if (carries_forces(assembly)) {

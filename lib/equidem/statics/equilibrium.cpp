@@ -201,18 +201,30 @@ EquilibriumSolver::~EquilibriumSolver() = default;
 EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
+namespace {
+
+void check_count(std::span<const DiscForce> loads, const Assembly& assembly) {
+  if (loads.size() != assembly.size())
+    bad_input(fmt::format("there are loads of {}, and the assembly has {}",
+                          counted(static_cast<std::int64_t>(loads.size()), "disc"),
+                          counted(static_cast<std::int64_t>(assembly.size()), "disc")),
+              "each disc has its own", "Give as many, 0 where nothing acts");
+}
+
+}  // namespace
+
 Equilibrium EquilibriumSolver::solve(const LoadCase& loads) {
   Implementation& self = *implementation_;
   const DegreesOfFreedom& unknowns = self.solver.unknowns();
   return self.solve(assemble_loads(self.assembly, unknowns, loads), unknowns.prescribed);
 }
 Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) {
-  assert(loads.size() == implementation_->assembly.size());
+  check_count(loads, implementation_->assembly);
   const DegreesOfFreedom& unknowns = implementation_->solver.unknowns();
   return implementation_->solve(assemble_loads(unknowns, loads), unknowns.prescribed);
 }
 Equilibrium EquilibriumSolver::solve_held(std::span<const DiscForce> loads) {
-  assert(loads.size() == implementation_->assembly.size());
+  check_count(loads, implementation_->assembly);
   return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads), {});
 }
 const Assembly& EquilibriumSolver::assembly() const {

@@ -87,6 +87,7 @@ class EquilibriumSolver {
   ///         keeps from turning; Error (computation_failed) where the residual shows that K is too near to singular
   [[nodiscard]] Equilibrium solve(const LoadCase& loads);
   /// \param loads one for each disc
+  /// \throws Error (bad_input) likewise, and where there are more or fewer loads than discs
   [[nodiscard]] Equilibrium solve(std::span<const DiscForce> loads);
   /// Likewise, with supports that do not move.
   [[nodiscard]] Equilibrium solve_held(std::span<const DiscForce> loads);
