@@ -52,3 +52,12 @@ def draw(folder):
         [state, cores, f"{min(a for a, _ in values):.1f} to {max(a for a, _ in values):.1f}",
          f"{values[0][1]} to {values[-1][1]}" if values[0][1] else "-"] for (state, cores), values in ratios.items()])
     figures.bars(folder / "steps", boxes, "million steps of a disc per second", by_name=True)
+    loops = {}
+    for row in rows_of(folder / "dynamic" / "beside_plain_loops.csv"):
+        if row["assembly"] == "hexagonal" and row["loop"] in ("plain, over neighbours", "equidem"):
+            name = "bonded, plain loop" if row["loop"] != "equidem" else f"bonded, {row['threads']} thread{'s' * (row['threads'] != '1')}"
+            loops.setdefault(f"{int(row['discs']):,} discs".replace(",", " "), []).append((name, 1e-6 * first(row["disc-steps/s"])))
+    for row in rows_of(folder / "grains" / "the_loop_of_colliding_discs.csv"):
+        discs = f"{int(row['discs']):,} discs that collide".replace(",", " ")
+        loops.setdefault(discs, []).append((row["state"], 1e-6 * first(row["disc-steps/s"])))
+    figures.bars(folder / "loops", loops, "million steps of a disc per second")
