@@ -40,6 +40,10 @@ _MODULI: dict[str, Callable[[Any], Any]] = {
 }
 
 
+def _value(name: str, stiffness: Any) -> Any:
+    return stiffness[_PLACES[name]] if name in _PLACES else _MODULI[name](stiffness)
+
+
 @dataclasses.dataclass(frozen=True)
 class FittedSprings:
     """What `fit_springs` found.
@@ -105,10 +109,9 @@ class _Problem:
                    for kind, chosen in self.unknowns.values()]
         values, misses, rows = [], [], []
         for name, wanted in self.targets.items():
-            of = _MODULI.get(name, lambda c, place=_PLACES.get(name): c[place])
             tiny = 1e-100
-            value = of(stiffness)
-            slopes = np.array([of(stiffness + 1j * tiny * change).imag / tiny for change in changes])
+            value = _value(name, stiffness)
+            slopes = np.array([_value(name, stiffness + 1j * tiny * change).imag / tiny for change in changes])
             values.append(value)
             if name in _POSITIVE:  # of one factor of all springs the logarithm is a linear function
                 misses.append(np.log(value / wanted))
