@@ -152,10 +152,8 @@ std::vector<Answer> shown(const Results& results, const Results& units, std::str
       const bool whole = std::floor(*value) == *value && std::abs(*value) < 1e9 && unit.empty();
       answer.text = whole ? grouped(static_cast<std::int64_t>(*value)) : number_html(*value / factor, digits);
       answer.unit = name_of_unit;
-      if (const auto error = number_of(results, key.error); error && std::isfinite(*error)) {
-        const auto [small, unit_of_error] = prefixed(*error, unit);
-        answer.error = fmt::format("± {} {}", number_html(*error / small, 2), escape_xml(unit_of_error));
-      }
+      if (const auto error = number_of(results, key.error); error && std::isfinite(*error))
+        answer.error = fmt::format("± {} {}", number_html(*error / factor, 2), escape_xml(name_of_unit));
       answers.push_back(std::move(answer));
     }
   }
@@ -465,7 +463,8 @@ std::string figures_html(const std::vector<DrawnFigure>& figures, std::size_t ro
     used += image.size();
     if (used > room) {
       used -= image.size();
-      missing += fmt::format("<li>{}: no room is left on this page; its files hold it</li>\n", escape_xml(figure.name));
+      missing += fmt::format("<li><a href=\"{0}\">{0}</a>: no room is left for it on this page</li>\n",
+                             escape_xml(figure.file.filename().string()));
       continue;
     }
     html += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", image, escape_xml(figure.title));
