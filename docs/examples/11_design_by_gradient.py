@@ -4,8 +4,8 @@
 #
 # **Which radii and springs give nu = 0.12 with the least change, and what does the exact gradient save?**
 #
-# The unknowns are the radii of some 20 discs, which move the contact points, and the kT of their contacts, three times as
-# many. `scipy.optimize` finds them from the derivatives of `homogenize`, and once more from differences.
+# The unknowns are the radii of some 20 discs, which move the contact points, and the kT of their contacts, three times
+# as many. `scipy.optimize` finds them from the derivatives of `homogenize`, and once more from differences.
 
 # %%
 import time
@@ -74,12 +74,12 @@ for name, gradient in (("exact gradient", True), ("differences", False)):
     ways[name] = np.array(history)
     radii, springs = np.split(abs(np.exp(found.x) - 1), [discs])
     print(f"{name:15} nu = {poisson_ratio(found.x)[0]:.4f} in {len(history):5} evaluations, "
-          f"{time.perf_counter() - begin:6.2f} s; radii change by up to {radii.max():.1%}, kT by up to {springs.max():.1%}")
+          f"{time.perf_counter() - begin:6.2f} s; radii change by up to {radii.max():.1%}, kT by {springs.max():.1%}")
 assert 20 * len(ways["exact gradient"]) < len(ways["differences"])
 
 # %% [markdown]
-# Differences need an evaluation for each unknown and step. The gradient costs a tenth of one homogenization, whatever the
-# number of unknowns.
+# Differences need an evaluation for each unknown and step. The gradient costs a tenth of one homogenization, whatever
+# the number of unknowns.
 
 # %%
 figure, axes = plt.subplots()

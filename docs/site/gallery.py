@@ -120,7 +120,8 @@ def page(source, stage, program):
         jobs = {case: pool.submit(picture, program, case, folder / f"{case.stem}.png", seconds)
                 for _, cases in groups for case in cases}
     lines = ["# Cases as pictures", "", "Every case of `data/cases`, drawn by the program; runs that take longer than "
-             f"{seconds:g} s as far as they came. A picture leads to its case file, whose comment has more commands.", ""]
+             f"{seconds:g} s as far as they came. A picture leads to its case file, whose comment has more commands.",
+             ""]
     for heading, cases in groups:
         lines += [f"## {heading}", "", "| | |", "|---|---|"]
         for case in cases:

@@ -64,7 +64,8 @@ def shown(page, name, where, columns):
     for column in [column for column, _ in wanted] + [condition[0] for condition in conditions]:
         if column not in head:
             raise Wrong(f"{page.relative_to(SOURCE)}: {name} has no column '{column}'; it has {', '.join(head)}")
-    kept = [row for row in rows if all(row[column] == value[0] if value else row[column] for column, *value in conditions)]
+    kept = [row for row in rows
+            if all(row[column] == value[0] if value else row[column] for column, *value in conditions)]
     return table([label for _, label in wanted], [[unbroken(row[column]) for column, _ in wanted] for row in kept])
 
 

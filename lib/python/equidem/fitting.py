@@ -169,8 +169,8 @@ def _unknowns(given: Mapping[str, Any] | None, start: Floats) -> dict[str, tuple
             raise BadInput("the group has no contacts", "its springs change nothing", "Leave it out", where)
         if owner[k][chosen].astype(bool).any():
             other = next(one for one in owner[k][chosen] if one)
-            raise BadInput(f"contacts are in {other!r} too", "a spring is one unknown", "Give groups that do not overlap",
-                           where)
+            raise BadInput(f"contacts are in {other!r} too", "a spring is one unknown",
+                           "Give groups that do not overlap", where)
         if not (start[chosen, k] > 0).all():
             raise BadInput(f"{kind} is not positive at the start", "springs are changed by factors",
                            "Start with positive springs", where)
@@ -189,7 +189,8 @@ def _targets(given: Mapping[str, float], weights: Mapping[str, float] | None) ->
     targets = {name: float(floats(f"targets[{name!r}]", value, ())) for name, value in given.items()}
     for name, value in targets.items():
         if name in _POSITIVE and value <= 0:
-            raise BadInput(f"{name} = {value:g} Pa", "a stable continuum has it above 0", "Give a positive one", "targets")
+            raise BadInput(f"{name} = {value:g} Pa", "a stable continuum has it above 0", "Give a positive one",
+                           "targets")
     of_targets = floats("weights", [(weights or {}).get(name, 1.0) for name in targets], (len(targets),))
     if not (of_targets > 0).all():
         raise BadInput("a weight is not positive", "its target would not count", "Leave the target out", "weights")
@@ -202,9 +203,9 @@ def fit_springs(cell: Assembly, start: Any, targets: Mapping[str, float],
                 tolerance: float = 1e-10, most: int = 50, **tables: Any) -> FittedSprings:
     """Springs with which a cell has wanted moduli: any number of unknowns and of targets.
 
-    Each unknown is a common factor of kN or kT of some contacts. Gauss-Newton with exact derivatives (one homogenization
-    a step) finds the factors that meet the targets with the least change, as the sum of the squares of their logarithms;
-    where targets conflict, those with the least sum of squares of the weighted misses.
+    Each unknown is a common factor of kN or kT of some contacts. Gauss-Newton with exact derivatives (one
+    homogenization a step) finds the factors that meet the targets with the least change, as the sum of the squares of
+    their logarithms; where targets conflict, those with the least sum of squares of the weighted misses.
 
     Parameters
     ----------
@@ -240,7 +241,8 @@ def fit_springs(cell: Assembly, start: Any, targets: Mapping[str, float],
         The network is not stable at the start.
     """
     if not 0 < smallest < 1 < largest:
-        raise BadInput(f"smallest = {smallest:g}, largest = {largest:g}", "factors begin at 1", "Give limits on both sides")
+        raise BadInput(f"smallest = {smallest:g}, largest = {largest:g}", "factors begin at 1",
+                       "Give limits on both sides")
     most = whole("most", most, 1)
     springs = springs_from(start).at_contacts(cell)
     chosen = _unknowns(unknowns, springs)
