@@ -46,7 +46,7 @@ PARTS = [
     ("Eigen/*", ["lib/equidem/breakage/*", "lib/equidem/homogenize/*", "lib/equidem/statics/*", "lib/equidem/waves/*",
                  "tests/*"], 6),
     ("Spectra/*", ["lib/equidem/waves/*"], 1),
-    ("boost/geometry/*", ["lib/equidem/contact/*"], 4),
+    ("boost/geometry/*", ["lib/equidem/contact/*"], 1),
     ("boost/math/*", ["lib/equidem/core/*", "lib/equidem/homogenize/*", "lib/equidem/waves/*"], 4),
     ("cairo*", ["lib/equidem/output/*"], 1),
     ("hdf5.h", ["lib/equidem/core/files/*"], 1),
