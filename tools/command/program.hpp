@@ -14,8 +14,8 @@ class App;
 
 namespace equidem {
 
-/// Runs a command after its options are read; returns the exit code.
-using Run = std::function<int()>;
+/// Runs a command after its options are read; what ends it otherwise than done is an Error.
+using Run = std::function<void()>;
 
 /// The effects of a case that a command takes; it refuses a case that asks for another one.
 struct Takes {

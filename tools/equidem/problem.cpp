@@ -442,7 +442,7 @@ Results estimate_results(const SolveEstimate& e, double resident, double drawing
 
 }  // namespace
 
-int dry_run(const CommonOptions& given, const Problem& problem, const Results& further, AssemblyKeys keys,
+void dry_run(const CommonOptions& given, const Problem& problem, const Results& further, AssemblyKeys keys,
             const MoreMemory& more) {
   const double resident = resident_memory();
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
@@ -477,7 +477,6 @@ int dry_run(const CommonOptions& given, const Problem& problem, const Results& f
               .append(further)
               .append(estimate_results(estimate, resident, drawing, problem.resolved.solver.memory_limit)),
           problem.times);
-  return 0;
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

@@ -176,8 +176,7 @@ struct MoreMemory {
   int at_once = 1;                     ///< solutions beside each other
 };
 /// --dry-run: delivers the problem, further results, size, memory and work of a factorization.
-/// \return the exit code, 0
-int dry_run(const CommonOptions& options, const Problem& problem, const Results& further, AssemblyKeys keys,
+void dry_run(const CommonOptions& options, const Problem& problem, const Results& further, AssemblyKeys keys,
             const MoreMemory& more = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.

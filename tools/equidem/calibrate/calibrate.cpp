@@ -195,14 +195,14 @@ std::vector<SeededSample> build_samples(const Problem& first) {
   return samples;
 }
 
-int dry_run_strengths(const CommonOptions& options, Problem& problem) {
+void dry_run_strengths(const CommonOptions& options, Problem& problem) {
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
   problem.breaks = true;
   Results results;
   add_unused(results, problem.resolved);
   const std::int64_t tests = 2 * number_of_samples(problem.resolved);
   const int at_once = static_cast<int>(std::min<std::int64_t>(thread_count(), tests));
-  return dry_run(options, problem, results, AssemblyKeys::size, {.at_once = at_once});
+  dry_run(options, problem, results, AssemblyKeys::size, {.at_once = at_once});
 }
 
 std::string text_of_strengths(const Case& resolved, const StrengthCalibration& found,
@@ -273,7 +273,7 @@ Results refusal_results(const Error& refusal) {
 
 /// With [strength_target]: wanted strengths -> strengths and friction of the contacts.
 /// \param file to which they are written; none: strength.toml in --out
-int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
+void calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
   check_alone(read);
   const FoundFile strengths_out(options, "strength", file);
   const auto problem_found = std::make_shared<std::optional<Problem>>();
@@ -322,7 +322,6 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts, failure);
   if (refusal) throw *refusal;
   strengths_out.say_written(options);
-  return 0;
 }
 
 /// One value, or the two ends of a range.
@@ -643,7 +642,7 @@ Problem problem_with_material(Case resolved) {
   return {std::move(resolved), std::move(assembly), std::move(unknown), {}, {}, {}, std::move(times)};
 }
 
-int calibrate(const CalibrateVerb& options) {
+void calibrate(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   Case read = read_case(common);
   const bool strengths = read.strength_target.has_value();
@@ -713,7 +712,6 @@ int calibrate(const CalibrateVerb& options) {
             : springs_out.not_found(results, "what is above is the best that was found");
   deliver(common, "calibrated", std::move(results), std::move(times), parts, failure);
   springs_out.say_written(common);
-  return 0;
 }
 
 }  // namespace

@@ -289,7 +289,7 @@ constexpr std::array export_formats{
     ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx)", export_to_matrix_market},
 };
 
-int export_case(const ExportOptions& options) {
+void export_case(const ExportOptions& options) {
   prepare(options);
   casefile::refuse_removed_word(options.to, "export");
   const ExportFormat& format = entry_named(export_formats, options.to, "format of --to");
@@ -309,7 +309,6 @@ int export_case(const ExportOptions& options) {
   }
   deliver(options, options.dry_run ? "dry_run" : "done", made.results, made.times,
           options.dry_run ? std::vector<OutputPart>{} : made.files);
-  return 0;
 }
 
 }  // namespace

@@ -497,7 +497,7 @@ Results memory_of_cells(const Case& resolved, const std::vector<EnsembleSetting>
                                       "at the peak, of the cells computed at once", {Shown::bytes});
 }
 
-int dry_run_ensemble(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
+void dry_run_ensemble(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
   const BuiltSprings springs = build_springs(resolved, first_cell(resolved, plan.discs.front(), plan.first_seed));
   const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
   std::vector<std::int64_t> unknowns;
@@ -518,7 +518,6 @@ int dry_run_ensemble(const CommonOptions& options, const Case& resolved, const E
   results.block("nothing was solved (--dry-run)\n");
   results.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
   deliver(options, "dry_run", results, {});
-  return 0;
 }
 
 /// Builds and homogenizes one cell.
@@ -624,7 +623,7 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
 
 }  // namespace
 
-int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
+void homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
   const auto made = std::make_shared<EnsembleOutput>();
   EnsembleResult& result = made->result.emplace(EnsembleResult{
@@ -670,10 +669,9 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
                          "the first: " + without_full_stop(result.samples.front().refusal), "");
   });
   deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
-  return 0;
 }
 
-int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
+void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
   if (!resolved.assembly.periodic()) {
     bad_input_at(resolved.where("assembly"), "--accuracy cannot be kept by samples with free boundaries",
                  "their moduli depend on the boundary far more than on the number of samples",
@@ -696,8 +694,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                                                        joined(pilots, " and "), wanted.most_discs)));
     const auto pilot_cells = accuracy_pilots(wanted);
     results.append(memory_of_cells(resolved, {pilot_cells.begin(), pilot_cells.end()}, wanted.first_seed));
-    deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
-    return 0;
+    return deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
   }
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {
@@ -731,7 +728,6 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   results.append(ensemble_results(result));
   if (sampled.estimated > 0 || !made->failure) results.append(accuracy_results(reached));
   deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
-  return 0;
 }
 
 }  // namespace equidem

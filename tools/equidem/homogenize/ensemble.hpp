@@ -13,12 +13,12 @@ namespace equidem {
 /// \param resume keep the samples that lie in --out (option --resume of the verb), compute the others
 /// \throws Error (bad_input) where the case has no periodic cell, or the samples in --out are of another case;
 ///         (computation_failed) where every sample is refused; (interrupted), with what is done kept in --out
-int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume = false);
+void homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume = false);
 
 /// Random cells in the number and size that the accuracy requires, regardless of the sizes and numbers in the case; the
 /// case that is written names those that were chosen.
 /// \throws Error (bad_input) where the case has no periodic cells; (computation_failed) where the accuracy is beyond
 ///         all means; (interrupted)
-int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
+void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
 
 }  // namespace equidem

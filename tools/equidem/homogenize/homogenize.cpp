@@ -636,7 +636,7 @@ double bytes_of_sensitivities(const Problem& problem) {
   return kinds * sizeof(Matrix3) * static_cast<double>(assembly.contacts.size()) / static_cast<double>(assembly.size());
 }
 
-int dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem) {
+void dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem) {
   const std::optional<double>& accuracy = options.accuracy;
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
@@ -654,14 +654,14 @@ int dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem
     add_solver_of_complex(results, problem.resolved.solver);
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
-  return dry_run(options, problem, results, AssemblyKeys::all,
+  dry_run(options, problem, results, AssemblyKeys::all,
                  {.of_complex = problem.resolved.viscoelastic.has_value(),
                   .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
                                    (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
                   .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
-int homogenize(const HomogenizeVerb& options) {
+void homogenize(const HomogenizeVerb& options) {
   Case resolved = read_case(options);
   refuse_viscoelastic_samples(resolved, options.accuracy.has_value());
   if (options.sensitivities && (resolved.ensemble || (options.accuracy && resolved.assembly.random())))
@@ -724,7 +724,6 @@ int homogenize(const HomogenizeVerb& options) {
       hand_over(shape_arrays(shape_sensitivities(problem.assembly, springs, result)));
   }
   hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
-  return 0;
 }
 
 }  // namespace

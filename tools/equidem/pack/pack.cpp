@@ -313,7 +313,7 @@ PackingMeasures measured(const PackCase& resolved, GrainPacking& packing) {
   }
 }
 
-int run(const CommonOptions& common) {
+void run(const CommonOptions& common) {
   prepare(common);
   const auto shared_case = std::make_shared<const PackCase>(read_pack_case(common.case_file, overrides_of(common)));
   const PackCase& resolved = *shared_case;
@@ -328,8 +328,7 @@ int run(const CommonOptions& common) {
     const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
     Results out = pack_case_results(resolved).set("grains", resolved.packing.radii.size());
     out.line("memory").add("peak_bytes", "about", resident + needed, "at the peak", {Shown::bytes});
-    deliver(common, "dry_run", out.append(estimate), {});
-    return 0;
+    return deliver(common, "dry_run", out.append(estimate), {});
   }
   require_memory(needed, "packing needs about", "Pack fewer bodies, or take a machine with more memory");
   const auto lock = lock_out(common);
@@ -348,7 +347,6 @@ int run(const CommonOptions& common) {
   deliver(common, "done", packing_results(resolved, packing, network, density, measures), std::move(times), parts,
           failure);
   if (arrays_wanted()) hand_over(std::make_shared<const Assembly>(with_cells(network)));
-  return 0;
 }
 
 }  // namespace

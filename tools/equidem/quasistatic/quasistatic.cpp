@@ -414,11 +414,11 @@ Results quasistatic_results(const Sequence& sequence) {
 }
 
 /// Size and memory of a path: how many events follow is not known before.
-int dry_run_path(const CommonOptions& options, Sequence& sequence) {
+void dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
-  return dry_run(options, problem, path_results(sequence), AssemblyKeys::all, {.bytes_of_picture = picture});
+  dry_run(options, problem, path_results(sequence), AssemblyKeys::all, {.bytes_of_picture = picture});
 }
 
 /// Whether the table of events does not hold all that is needed to go on from it: forces of frictional contacts depend
@@ -591,7 +591,7 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
           {"the figures", draw, OutputPart::page, names_of_figures(wanted)}};
 }
 
-int quasistatic(const QuasistaticOptions& given) {
+void quasistatic(const QuasistaticOptions& given) {
   CommonOptions options = given.common;
   if (given.resume && !options.out)
     bad_input("--resume has nothing to go on from", "the events lie in the folder of --out", "Add --out DIR");
@@ -628,7 +628,6 @@ int quasistatic(const QuasistaticOptions& given) {
                   "Run the same command with --resume to go on");
   }
   hand_over(std::shared_ptr<const Assembly>(path, &sequence.problem.assembly));
-  return 0;
 }
 
 }  // namespace

@@ -338,7 +338,7 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
               failure);
 }
 
-int run_to_accuracy(RunVerb options, double accuracy) {
+void run_to_accuracy(RunVerb options, double accuracy) {
   CaseSearch search(options.common, [&] {
     const BondedRun given(read_case(options.common));
     check_outputs(options, given);
@@ -347,7 +347,7 @@ int run_to_accuracy(RunVerb options, double accuracy) {
   const auto lock = lock_out(options.common);
   for (;;) {
     const auto job = std::make_shared<BondedRun>(search.propose());
-    if (step_through(options, job, &search)) return 0;
+    if (step_through(options, job, &search)) return;
     options.common.overwrite = true;  // files of the step that was too long
   }
 }
@@ -376,7 +376,7 @@ void check_options(const RunVerb& options, bool collide) {
   if (common.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
 }
 
-int run(const RunVerb& options) {
+void run(const RunVerb& options) {
   const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
   check_options(options, collide);
   if (options.accuracy && !options.common.dry_run) return run_to_accuracy(options, *options.accuracy);
@@ -392,7 +392,6 @@ int run(const RunVerb& options) {
   } else {
     step_through(options, job);
   }
-  return 0;
 }
 
 }  // namespace

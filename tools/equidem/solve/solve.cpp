@@ -301,7 +301,7 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
   return true;
 }
 
-int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
+void solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   Case resolved = read_case(options);
   const auto solution = std::make_shared<Solution>();
   const std::vector<OutputPart> parts = output_parts(resolved, solution);
@@ -314,15 +314,18 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
     do {
       build(search.propose());
     } while (!solve_once(options, parts, solution, accuracy, &search));
-    return 0;
+    return;
   }
   build(std::move(resolved));
-  if (!options.dry_run) return solve_once(options, parts, solution, accuracy, nullptr) ? 0 : 1;
+  if (!options.dry_run) {
+    solve_once(options, parts, solution, accuracy, nullptr);
+    return;
+  }
   const Problem& problem = *solution->problem;
   Results further;
   if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
   const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
-  return dry_run(options, problem, further, AssemblyKeys::all, {.bytes_of_picture = picture});
+  dry_run(options, problem, further, AssemblyKeys::all, {.bytes_of_picture = picture});
 }
 
 }  // namespace

@@ -561,7 +561,7 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
 }
 
 /// Loads and motions that make a prestress are not solved for.
-int dry_run_survey(const StabilityCommand& options, Problem given) {
+void dry_run_survey(const StabilityCommand& options, Problem given) {
   const bool acted_on = acts_on_rest(given);
   const Problem problem =
       acted_on && !carries_forces(given.assembly) ? std::move(given) : prestressed(std::move(given));
@@ -594,11 +594,11 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  return dry_run(options, problem, results, AssemblyKeys::size,
+  dry_run(options, problem, results, AssemblyKeys::size,
                  {.inertia = vectors_of_frequencies(options.frequencies)});
 }
 
-int stability(const StabilityCommand& options) {
+void stability(const StabilityCommand& options) {
   Case resolved = read_case(options);
   const auto judged = std::make_shared<Judged>();
   const std::vector<OutputPart> parts = output_parts(resolved, judged);
@@ -624,7 +624,6 @@ int stability(const StabilityCommand& options) {
     hand_over(motion_arrays(fmt::format("modes/{}/", k), mode));
   }
   hand_over(std::shared_ptr<const Assembly>(judged, &problem.assembly));
-  return 0;
 }
 
 }  // namespace

@@ -420,7 +420,7 @@ void refuse_unreached(const StudyReport& report) {
                      "Ask for less, or study finer settings");
 }
 
-int dry_run_study(const StudyVerb& verb, const Study& study) {
+void dry_run_study(const StudyVerb& verb, const Study& study) {
   Results results;
   results.set("study", study.name).set("title", study.title).block(study.title + "\n\n");
   results.line("settings").add("number_of_settings", "", study.tasks.size());
@@ -438,10 +438,9 @@ int dry_run_study(const StudyVerb& verb, const Study& study) {
   }
   if (most > 0) results.line("memory").add("peak_bytes", "", most, "at the peak", {Shown::bytes});
   deliver(verb.common, "dry_run", results, {});
-  return 0;
 }
 
-int run_verb(const StudyVerb& verb) {
+void run_verb(const StudyVerb& verb) {
   check(verb);
   const Stopwatch watch;
   set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
@@ -499,7 +498,6 @@ int run_verb(const StudyVerb& verb) {
   }
   refuse_all_failed(report);
   if (verb.accuracy) refuse_unreached(report);
-  return 0;
 }
 
 }  // namespace

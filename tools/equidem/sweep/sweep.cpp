@@ -234,7 +234,7 @@ std::optional<std::pair<std::size_t, Delivery>> first_dry_run(const Sweep& sweep
 
 /// Delivers the number of points and the dry run of the first that can be computed.
 /// \param results of the keys, which the others follow
-int dry_run_sweep(const Sweep& sweep, Results results) {
+void dry_run_sweep(const Sweep& sweep, Results results) {
   const SweepPlan& plan = sweep.plan;
   const SharedAssemblies shared;
   const double resident = resident_memory();
@@ -252,7 +252,6 @@ int dry_run_sweep(const Sweep& sweep, Results results) {
              {Shown::bytes});
   }
   deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
-  return 0;
 }
 
 /// First line of the case that is written, which tells sweeps by different verbs apart.
@@ -446,7 +445,7 @@ void add_failures(Results& results, std::span<const SweepPoint> points, std::siz
         "", fmt::format("{} other reasons are in the column message of {}", reasons.size() - most, Sweep::table_name));
 }
 
-int sweep(const SweepOptions& options) {
+void sweep(const SweepOptions& options) {
   check_verb(options.verb);
   if (options.common.seed && !options.seeds.empty())
     bad_input("--seed and --seeds exclude each other", "both say which seed a point has", "Leave one of them out");
@@ -496,7 +495,6 @@ int sweep(const SweepOptions& options) {
   if (all_failed)
     computation_failed("none of the points could be computed",
                        "the first: " + without_full_stop(points.front().message), "");
-  return 0;
 }
 
 /// The key that an option belongs to: the last one given before it, or the first one where none is.
