@@ -181,15 +181,15 @@ static void check_named(const std::filesystem::path& path, bool overwrite) {
   check_writable(path, overwrite);
 }
 
-void OutputPlan::expect_json() const {
-  if (options_.json && *options_.json != "-") check_named(*options_.json, options_.overwrite);
+void expect_json(const CommonOptions& options) {
+  if (options.json && *options.json != "-") check_named(*options.json, options.overwrite);
 }
 
-void OutputPlan::expect_results(const std::vector<OutputPart>& parts) const {
+void expect_results(const CommonOptions& options, const std::vector<OutputPart>& parts, bool replaces) {
   namespace fs = std::filesystem;
   std::vector<fs::path> taken;
   const auto take = [&](const std::string& what, const fs::path& path, bool named) {
-    named ? check_named(path, options_.overwrite) : check_writable(path, options_.overwrite || replaces_);
+    named ? check_named(path, options.overwrite) : check_writable(path, options.overwrite || replaces);
     std::error_code ignored;
     const fs::path place = fs::weakly_canonical(fs::absolute(path), ignored);
     if (std::ranges::find(taken, place) != taken.end())
@@ -197,13 +197,13 @@ void OutputPlan::expect_results(const std::vector<OutputPart>& parts) const {
                 "one would replace the other", "Give it a file of its own");
     taken.push_back(place);
   };
-  if (options_.json && *options_.json != "-") take("the JSON", *options_.json, true);
-  if (options_.out) take("the results", *options_.out / "result.json", false);
-  if (options_.out && has_page(options_.verb)) take("the page", *options_.out / page_name, false);
+  if (options.json && *options.json != "-") take("the JSON", *options.json, true);
+  if (options.out) take("the results", *options.out / "result.json", false);
+  if (options.out && has_page(options.verb)) take("the page", *options.out / page_name, false);
   for (const OutputPart& part : parts) {
     const bool named = part.place == OutputPart::file;
     for (const std::string& name : part.files)
-      if (named || options_.out) take(part.name, named ? fs::path(name) : *options_.out / name, named);
+      if (named || options.out) take(part.name, named ? fs::path(name) : *options.out / name, named);
   }
 }
 

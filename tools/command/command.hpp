@@ -129,23 +129,13 @@ OutputPart case_part(const Resolved& resolved, const std::string& note = {}) {
   return {"case.toml", write, OutputPart::page, {"case.toml"}};
 }
 
-/// Checks before the computation that the files of a verb can be written.
-class OutputPlan {
- public:
-  /// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
-  explicit OutputPlan(const CommonOptions& options, bool replaces = false) : options_(options), replaces_(replaces) {}
-
-  /// The files of deliver and those of the parts.
-  /// \throws Error (bad_input) where one could not be written, or two go to one place
-  void expect_results(const std::vector<OutputPart>& parts) const;
-  /// The file of --json alone, in an existing folder: a missing one is probably a typing error.
-  /// \throws Error (bad_input)
-  void expect_json() const;
-
- private:
-  const CommonOptions& options_;
-  bool replaces_;
-};
+/// Checks before the computation that the files of deliver and those of the parts can be written.
+/// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
+/// \throws Error (bad_input) where one could not be written, or two go to one place
+void expect_results(const CommonOptions& options, const std::vector<OutputPart>& parts, bool replaces = false);
+/// The file of --json alone, in an existing folder: a missing one is probably a typing error.
+/// \throws Error (bad_input)
+void expect_json(const CommonOptions& options);
 
 /// Keeps other processes from --out until the end of a verb, also from what it reads there; none without --out or on a
 /// dry run.

@@ -374,7 +374,7 @@ std::unique_ptr<FolderLock> lock_files(const petsc::Ranks& ranks, const CommonOp
       for (int rank = 0; rank < ranks.count(); ++rank)
         std::ranges::move(vtk_piece_names(state, rank), std::back_inserter(files.files));
     }
-    OutputPlan(options).expect_results({files});
+    expect_results(options, {files});
     if (options.out) lock = std::make_unique<FolderLock>(*options.out);
   });
   return lock;

@@ -279,7 +279,7 @@ void calibrate_strengths(const CommonOptions& options, const std::optional<std::
   const auto problem_found = std::make_shared<std::optional<Problem>>();
   const std::vector<OutputPart> parts{case_part([=]() -> const Case& { return (*problem_found)->resolved; }),
                                       strengths_out.part()};
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   Problem& problem = problem_found->emplace(problem_of(std::move(read)));
   const Case& resolved = problem.resolved;
@@ -662,7 +662,7 @@ void calibrate(const CalibrateVerb& options) {
   const std::vector<OutputPart> parts{case_part([=]() -> const Case& { return (*problem_found)->resolved; }),
                                       {assembly_name, write, OutputPart::folder, {assembly_name}},
                                       springs_out.part()};
-  OutputPlan(common).expect_results(parts);
+  expect_results(common, parts);
   const auto lock = lock_out(common);
   Problem& problem = problem_found->emplace(problem_with_material(std::move(read)));
   const Case& resolved = problem.resolved;

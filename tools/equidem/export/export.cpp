@@ -295,10 +295,10 @@ void export_case(const ExportOptions& options) {
   const ExportFormat& format = entry_named(export_formats, options.to, "format of --to");
   if (!options.out && !options.dry_run)
     bad_input("export without --out", "its files need a folder", "Name one: --out DIR");
-  OutputPlan(options).expect_results({});
+  expect_results(options, {});
   const auto lock = lock_out(options);
   Exported made = format.make(options);
-  OutputPlan(options).expect_results(made.files);
+  expect_results(options, made.files);
   const std::vector others(made.files.begin() + 1, made.files.end());  // but the case
   made.results.line("files", joined(others, &OutputPart::name));
   made.results.set("format", format.name);

@@ -631,11 +631,11 @@ void homogenize_ensemble(const CommonOptions& options, const Case& resolved, boo
   result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
   Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan));
-  OutputPlan(options).expect_json();
+  expect_json(options);
   if (options.dry_run) return dry_run_ensemble(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
   const std::vector<OutputPart> parts = output_parts(made);
-  OutputPlan(options, resume).expect_results(parts);
+  expect_results(options, parts, resume);
   const auto lock = lock_out(options);
   const std::string note = options.out ? note_of_files(resolved.document) : std::string();
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume, note);
@@ -677,10 +677,10 @@ void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, 
                  "their moduli depend on the boundary far more than on the number of samples",
                  fmt::format("Set {}", joins_sides(resolved.assembly)));
   }
-  OutputPlan(options).expect_json();
+  expect_json(options);
   const auto made = std::make_shared<EnsembleOutput>();
   const std::vector<OutputPart> parts = output_parts(made);
-  if (!options.dry_run) OutputPlan(options).expect_results(parts);
+  if (!options.dry_run) expect_results(options, parts);
   const auto lock = lock_out(options);
   EnsembleAccuracy wanted{.accuracy = accuracy, .first_seed = resolved.assembly.seed()};
   if (resolved.assembly.packing) wanted.smallest = smallest_packing;

@@ -678,7 +678,7 @@ void homogenize(const HomogenizeVerb& options) {
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
   const auto found = std::make_shared<Homogenized>();
   const std::vector<OutputPart> parts = output_parts(resolved, found, options.sensitivities);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
   const Problem& problem = found->problem.emplace(prestressed(problem_of(std::move(resolved))));

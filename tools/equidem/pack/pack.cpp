@@ -319,7 +319,7 @@ void run(const CommonOptions& common) {
   const PackCase& resolved = *shared_case;
   const auto packed = std::make_shared<Packed>();
   const std::vector<OutputPart> parts = output_parts(shared_case, packed);
-  OutputPlan(common).expect_results(parts);
+  expect_results(common, parts);
   located(resolved, "method", [&] { check(resolved.packing); });
   if (resolved.region) located(resolved, "region", [&] { check_region(resolved.packing.box, *resolved.region); });
   const double bodies = static_cast<double>(resolved.packing.radii.size()), resident = resident_memory();

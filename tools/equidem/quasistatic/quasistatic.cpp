@@ -600,7 +600,7 @@ void quasistatic(const QuasistaticOptions& given) {
   const auto path = std::make_shared<ComputedPath>();
   if (options.out) path->note = note_of_files(resolved.document);
   const std::vector<OutputPart> parts = output_parts(resolved, path);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   Sequence& sequence = path->sequence.emplace(build(resolved));
   if (options.dry_run) return dry_run_path(options, sequence);

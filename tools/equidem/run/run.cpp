@@ -262,8 +262,7 @@ struct RunVerb {
 
 /// Before the run, so that no hour is lost to a full folder.
 void check_outputs(const RunVerb& options, const RunJob& job) {
-  const OutputPlan plan(options.common);
-  options.resume ? plan.expect_json() : plan.expect_results(job.parts({}));
+  options.resume ? expect_json(options.common) : expect_results(options.common, job.parts({}));
 }
 
 /// Delivers the results of a run with its files, which keep job and result.

@@ -305,7 +305,7 @@ void solve(const CommonOptions& options, const std::optional<double>& accuracy) 
   Case resolved = read_case(options);
   const auto solution = std::make_shared<Solution>();
   const std::vector<OutputPart> parts = output_parts(resolved, solution);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   const auto build = [&](Case wanted) { solution->problem.emplace(prestressed(build_problem(std::move(wanted)))); };
   const bool searched = accuracy && block_can_be_chosen(resolved);

@@ -602,7 +602,7 @@ void stability(const StabilityCommand& options) {
   Case resolved = read_case(options);
   const auto judged = std::make_shared<Judged>();
   const std::vector<OutputPart> parts = output_parts(resolved, judged);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
   Problem built = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));

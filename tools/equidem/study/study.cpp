@@ -468,7 +468,7 @@ void run_verb(const StudyVerb& verb) {
       {"study.csv", write, OutputPart::folder, {"study.csv"}},
       {study_plot_name(study), draw, OutputPart::page, plot_files(study_plot_name(study))}};
   // Files of an earlier run of the same study are replaced; those of anything else are not.
-  OutputPlan(verb.common, !kept.tasks.empty()).expect_results(parts);
+  expect_results(verb.common, parts, !kept.tasks.empty());
   SavedOnTheWay saved(verb.common);
   samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
     if (!folder || since_saved.seconds() < 1) return;

@@ -463,7 +463,7 @@ void sweep(const SweepOptions& options) {
                                        OutputPart::folder,
                                        {Sweep::table_name, Sweep::case_name}},
                                       {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
-  OutputPlan(options.common, options.resume).expect_results(parts);
+  expect_results(options.common, parts, options.resume);
   if (options.common.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
   const auto lock = lock_out(options.common);
   SweepRun& run = computed.emplace(sweep, points_to_keep(sweep));
