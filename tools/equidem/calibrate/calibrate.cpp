@@ -587,8 +587,7 @@ Results feasible_results(const Problem& problem, const Calibration& range) {
   return out;
 }
 
-struct CalibrateVerb {
-  CommonOptions common;
+struct CalibrateVerb : CommonOptions {
   std::optional<std::filesystem::path> springs;   ///< path of the springs file
   std::optional<std::filesystem::path> strength;  ///< path of the strength file
 };
@@ -643,8 +642,7 @@ Problem problem_with_material(Case resolved) {
 }
 
 void calibrate(const CalibrateVerb& options) {
-  const CommonOptions& common = options.common;
-  Case read = read_case(common);
+  Case read = read_case(options);
   const bool strengths = read.strength_target.has_value();
   if (options.springs && strengths)
     bad_input("--springs asks for springs, and the case for strengths", "[strength_target] takes its springs as given",
@@ -652,9 +650,9 @@ void calibrate(const CalibrateVerb& options) {
   if (options.strength && !strengths)
     bad_input("--strength asks for strengths, and the case for springs", "there is no [strength_target]",
               "Add it, or leave out --strength");
-  if (strengths) return calibrate_strengths(common, options.strength, std::move(read));
+  if (strengths) return calibrate_strengths(options, options.strength, std::move(read));
   const std::string assembly_name = assembly_file_name("assembly", read.output.assembly.value_or(AssemblyFormat::json));
-  const FoundFile springs_out(common, "springs", options.springs);
+  const FoundFile springs_out(options, "springs", options.springs);
   const auto problem_found = std::make_shared<std::optional<Problem>>();
   const auto write = [=](const CommonOptions& into) {
     write_assembly(*into.out / assembly_name, (*problem_found)->assembly, into.overwrite);
@@ -662,11 +660,11 @@ void calibrate(const CalibrateVerb& options) {
   const std::vector<OutputPart> parts{case_part([=]() -> const Case& { return (*problem_found)->resolved; }),
                                       {assembly_name, write, OutputPart::folder, {assembly_name}},
                                       springs_out.part()};
-  expect_results(common, parts);
-  const auto lock = lock_out(common);
+  expect_results(options, parts);
+  const auto lock = lock_out(options);
   Problem& problem = problem_found->emplace(problem_with_material(std::move(read)));
   const Case& resolved = problem.resolved;
-  if (common.dry_run) return dry_run(common, problem, {}, AssemblyKeys::size);
+  if (options.dry_run) return dry_run(options, problem, {}, AssemblyKeys::size);
 
   const ElasticModuli& wanted = resolved.material->moduli;
   const CalibrateOptions how = calibrate_options(resolved);
@@ -686,7 +684,7 @@ void calibrate(const CalibrateVerb& options) {
     }
   }();
   if (refusal) {
-    deliver(common, "not_feasible", feasible_results(problem, found).append(refusal_results(*refusal)), problem.times,
+    deliver(options, "not_feasible", feasible_results(problem, found).append(refusal_results(*refusal)), problem.times,
             parts);
     throw *refusal;
   }
@@ -710,15 +708,15 @@ void calibrate(const CalibrateVerb& options) {
   Results results = calibrated_results(problem, found, guess);
   converged ? springs_out.found(results, text_of_springs(resolved, problem.assembly, found))
             : springs_out.not_found(results, "what is above is the best that was found");
-  deliver(common, "calibrated", std::move(results), std::move(times), parts, failure);
-  springs_out.say_written(common);
+  deliver(options, "calibrated", std::move(results), std::move(times), parts, failure);
+  springs_out.say_written(options);
 }
 
 }  // namespace
 
 Run declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateVerb>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command.add_option("--springs", options->springs, "write the springs to this file, for springs = \"FILE\"")
       ->check(file_name())
       ->type_name("FILE");

@@ -32,8 +32,7 @@
 namespace equidem {
 namespace {
 
-struct QuasistaticOptions {
-  CommonOptions common;
+struct QuasistaticOptions : CommonOptions {
   bool resume = false;
 };
 
@@ -591,12 +590,11 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
           {"the figures", draw, OutputPart::page, names_of_figures(wanted)}};
 }
 
-void quasistatic(const QuasistaticOptions& given) {
-  CommonOptions options = given.common;
-  if (given.resume && !options.out)
+void quasistatic(QuasistaticOptions options) {
+  if (options.resume && !options.out)
     bad_input("--resume has nothing to go on from", "the events lie in the folder of --out", "Add --out DIR");
   const Case resolved = read_case(options);
-  if (given.resume) options.overwrite = true;
+  if (options.resume) options.overwrite = true;
   const auto path = std::make_shared<ComputedPath>();
   if (options.out) path->note = note_of_files(resolved.document);
   const std::vector<OutputPart> parts = output_parts(resolved, path);
@@ -606,7 +604,7 @@ void quasistatic(const QuasistaticOptions& given) {
   if (options.dry_run) return dry_run_path(options, sequence);
   sequence.begin();
   std::optional<FileMark> frames;
-  if (given.resume) {
+  if (options.resume) {
     frames = resume(options, sequence, path->note);
   } else if (options.out && keeps_state(resolved)) {
     PathCheckpoint(options, sequence).remove();
@@ -634,7 +632,7 @@ void quasistatic(const QuasistaticOptions& given) {
 
 Run declare_quasistatic(CLI::App& command) {
   const auto options = std::make_shared<QuasistaticOptions>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command.add_flag("--resume", options->resume, "go on behind the events that lie in --out");
   return [options] { return quasistatic(*options); };
 }

@@ -253,8 +253,7 @@ std::int64_t frames_of_film(std::size_t bodies) {
   return frames < fewest_frames ? 0 : static_cast<std::int64_t>(frames);
 }
 
-struct RunVerb {
-  CommonOptions common;
+struct RunVerb : CommonOptions {
   bool resume = false;
   std::optional<std::filesystem::path> begin_from;
   std::optional<double> accuracy;
@@ -262,7 +261,7 @@ struct RunVerb {
 
 /// Before the run, so that no hour is lost to a full folder.
 void check_outputs(const RunVerb& options, const RunJob& job) {
-  options.resume ? expect_json(options.common) : expect_results(options.common, job.parts({}));
+  options.resume ? expect_json(options) : expect_results(options, job.parts({}));
 }
 
 /// Delivers the results of a run with its files, which keep job and result.
@@ -280,7 +279,7 @@ void deliver_run(const RunVerb& options, const char* status, Results results, St
     };
     parts.insert(parts.begin(), {"history.csv", write, OutputPart::page});
   }
-  CommonOptions written = options.common;
+  CommonOptions written = options;
   written.overwrite |= options.resume;
   deliver(written, status, std::move(results), std::move(times), parts, failure);
 }
@@ -288,21 +287,20 @@ void deliver_run(const RunVerb& options, const char* status, Results results, St
 /// Make all steps and deliver the results; false, and nothing delivered, where the step that the search proposed is too
 /// long.
 bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job, CaseSearch* search = nullptr) {
-  const CommonOptions& common = options.common;
   RunJob& job = *shared_job;
   RunPlan plan = job.plan();
-  if (common.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
-  const HistoryFolder tables(common.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
+  if (options.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
+  const HistoryFolder tables(options.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
   if (tables.is_temporary()) plan.frame_interval.reset();
   const auto shared_result = std::make_shared<RunResult>();
   const RunResult& result = *shared_result;
   const std::optional<Error> failure = failure_of([&] {
     try {
       run_through(job.simulation(), plan,
-                  {.folder = tables.path(), .overwrite = common.overwrite, .resume = options.resume}, *shared_result);
+                  {.folder = tables.path(), .overwrite = options.overwrite, .resume = options.resume}, *shared_result);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::interrupted) throw;
-      throw_stopped(common, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
+      throw_stopped(options, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
                     "Run the same command with --resume to do the rest");
     }
   });
@@ -338,23 +336,22 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
 }
 
 void run_to_accuracy(RunVerb options, double accuracy) {
-  CaseSearch search(options.common, [&] {
-    const BondedRun given(read_case(options.common));
+  CaseSearch search(options, [&] {
+    const BondedRun given(read_case(options));
     check_outputs(options, given);
     return searched_step(given, accuracy);
   }());
-  const auto lock = lock_out(options.common);
+  const auto lock = lock_out(options);
   for (;;) {
     const auto job = std::make_shared<BondedRun>(search.propose());
     if (step_through(options, job, &search)) return;
-    options.common.overwrite = true;  // files of the step that was too long
+    options.overwrite = true;  // files of the step that was too long
   }
 }
 
 /// Combinations of options that are not possible.
 void check_options(const RunVerb& options, bool collide) {
-  const CommonOptions& common = options.common;
-  if (options.resume && !common.out)
+  if (options.resume && !options.out)
     bad_input("--resume without --out", "the checkpoint lies in that folder",
               "Name the folder of the run that is to go on");
   if (options.accuracy && collide) {
@@ -372,20 +369,20 @@ void check_options(const RunVerb& options, bool collide) {
   if (options.begin_from && !collide)
     bad_input("--begin-from of bonded discs", "only runs of grains are in stages, with a checkpoint at the end of each",
               "Leave it out; --resume goes on with a longer duration");
-  if (common.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
+  if (options.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
 }
 
 void run(const RunVerb& options) {
-  const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
+  const bool collide = describes_grains(casefile::read_document(options.case_file, options.set));
   check_options(options, collide);
-  if (options.accuracy && !options.common.dry_run) return run_to_accuracy(options, *options.accuracy);
-  const std::shared_ptr<RunJob> job = make_run_job(options.common, options.resume, options.begin_from);
+  if (options.accuracy && !options.dry_run) return run_to_accuracy(options, *options.accuracy);
+  const std::shared_ptr<RunJob> job = make_run_job(options, options.resume, options.begin_from);
   check_outputs(options, *job);
-  const auto lock = lock_out(options.common);
-  if (options.common.dry_run) {
-    Results results = dry_run_results(*job, options.common.out.has_value());
+  const auto lock = lock_out(options);
+  if (options.dry_run) {
+    Results results = dry_run_results(*job, options.out.has_value());
     if (options.accuracy) results.append(accuracy_plan(*options.accuracy, plan_of_steps));
-    deliver(options.common, "dry_run", results, job->times());
+    deliver(options, "dry_run", results, job->times());
   } else if (job->goes_to_rest()) {
     relax_to_rest(options, job);
   } else {
@@ -490,7 +487,7 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
 
 Run declare_run(CLI::App& command) {
   const auto options = std::make_shared<RunVerb>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
   command
       .add_option("--begin-from", options->begin_from,

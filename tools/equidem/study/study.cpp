@@ -246,8 +246,7 @@ std::string study_plot_name(const Study& study) {
   return study.name + "_" + study.quantity;
 }
 
-struct StudyVerb {
-  CommonOptions common;
+struct StudyVerb : CommonOptions {
   std::string file;
   StudyOptions options;
   std::optional<double> accuracy;
@@ -381,8 +380,8 @@ StudySamples read_samples(const std::filesystem::path& path, const Study& study,
 
 /// Measurements that an earlier run left; none where it begins anew.
 StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& identity) {
-  if (!verb.common.out || verb.common.overwrite) return {};
-  const auto table = *verb.common.out / "samples.csv";
+  if (!verb.out || verb.overwrite) return {};
+  const auto table = *verb.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
   return read_samples(table, study, identity);
 }
@@ -437,21 +436,21 @@ void dry_run_study(const StudyVerb& verb, const Study& study) {
     if (refused && refused->kind() == ErrorKind::interrupted) throw Error(*refused);
   }
   if (most > 0) results.line("memory").add("peak_bytes", "", most, "at the peak", {Shown::bytes});
-  deliver(verb.common, "dry_run", results, {});
+  deliver(verb, "dry_run", results, {});
 }
 
 void run_verb(const StudyVerb& verb) {
   check(verb);
   const Stopwatch watch;
-  set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
-  set_progress_shown(!verb.common.quiet);
-  const Study study = study_of_file(verb.file, verb.common);
-  if (verb.common.dry_run) return dry_run_study(verb, study);
+  set_thread_count(verb.threads > 0 ? verb.threads : 1);
+  set_progress_shown(!verb.quiet);
+  const Study study = study_of_file(verb.file, verb);
+  if (verb.dry_run) return dry_run_study(verb, study);
   const std::string identity = study.checksum(fmt::format("{} seed {} threads {} {}", machine_text(), verb.options.seed,
-                                                          thread_count(), inputs_of_study(verb.file, verb.common)));
-  const auto lock = lock_out(verb.common);
+                                                          thread_count(), inputs_of_study(verb.file, verb)));
+  const auto lock = lock_out(verb);
   StudySamples kept = samples_to_keep(verb, study, identity);
-  const auto& folder = verb.common.out;
+  const auto& folder = verb.out;
   Stopwatch since_saved;
   const auto save = [&](const StudySamples& done) {
     write_samples(*folder / "samples.csv", samples_table(study, done, identity));
@@ -468,8 +467,8 @@ void run_verb(const StudyVerb& verb) {
       {"study.csv", write, OutputPart::folder, {"study.csv"}},
       {study_plot_name(study), draw, OutputPart::page, plot_files(study_plot_name(study))}};
   // Files of an earlier run of the same study are replaced; those of anything else are not.
-  expect_results(verb.common, parts, !kept.tasks.empty());
-  SavedOnTheWay saved(verb.common);
+  expect_results(verb, parts, !kept.tasks.empty());
+  SavedOnTheWay saved(verb);
   samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
     if (!folder || since_saved.seconds() < 1) return;
     saved([&] { save(done); });
@@ -491,9 +490,9 @@ void run_verb(const StudyVerb& verb) {
   StageTimes times;
   times.add("study", watch.seconds());
   *plot = study_plot(report);
-  deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
+  deliver(verb, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
   if (samples.stopped) {
-    throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
+    throw_stopped(verb, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
                   "Run the same command to go on");
   }
   refuse_all_failed(report);
@@ -505,8 +504,8 @@ void run_verb(const StudyVerb& verb) {
 Run declare_study(CLI::App& command) {
   const auto verb = std::make_shared<StudyVerb>();
   command.add_option("STUDY", verb->file, "the study file (.toml)")->type_name("FILE");
-  add_result_options(command, verb->common);
-  command.add_flag("--dry-run", verb->common.dry_run, "say how many settings the study has");
+  add_result_options(command, *verb);
+  command.add_flag("--dry-run", verb->dry_run, "say how many settings the study has");
   command.get_option("--threads")->description("threads; left out: one, so that times are those of one processor");
   command.add_option("--accuracy", verb->accuracy, "name the cheapest setting whose errors are at most X")
       ->check(finite_number())

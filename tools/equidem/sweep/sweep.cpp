@@ -43,9 +43,8 @@
 namespace equidem {
 namespace {
 
-struct SweepOptions {
-  CommonOptions common;
-  std::string verb = "solve";
+struct SweepOptions : CommonOptions {
+  std::string swept = "solve";  ///< the verb
   std::vector<KeyOptions> keys;
   std::vector<std::string> seeds;  ///< "1,2,3", "1-5"
   bool side_by_side = false;
@@ -135,13 +134,13 @@ SweepPoint point_of(const Sweep& sweep, std::size_t number) {
 VerbRun Sweep::run_of(const std::vector<std::string>& values, const std::vector<std::string>& further) const {
   std::vector<std::string> all = options_of(plan, values, base.document);
   all.insert(all.end(), further.begin(), further.end());
-  if (options.common.seed) all.insert(all.end(), {"--seed", fmt::format("{}", *options.common.seed)});
-  if (options.common.quiet) all.emplace_back("--quiet");
-  return {plan.verb, options.common.case_file, options.common.set, all};
+  if (options.seed) all.insert(all.end(), {"--seed", fmt::format("{}", *options.seed)});
+  if (options.quiet) all.emplace_back("--quiet");
+  return {plan.verb, options.case_file, options.set, all};
 }
 
 SweepRun::SweepRun(const Sweep& sweep, std::vector<SweepPoint> kept)
-    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()), saved_(sweep.options.common) {
+    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()), saved_(sweep.options) {
   std::map<std::vector<std::string>, const SweepPoint*> known;
   for (const SweepPoint& point : kept_)
     if (!point.failed()) known.emplace(point.values, &point);
@@ -187,7 +186,7 @@ std::vector<SweepPoint> SweepRun::points() const {
 }
 
 void SweepRun::save() const {
-  const auto& folder = sweep_.options.common.out;
+  const auto& folder = sweep_.options.out;
   if (folder) write_samples(*folder / Sweep::table_name, sweep_table(sweep_.plan, points()));
 }
 
@@ -213,7 +212,7 @@ void SweepRun::announce(std::size_t at_once) const {
   const double left =
       watch_.seconds() * static_cast<double>(missing_.size() - computed_) / static_cast<double>(at_once);
   if (computed_ == 0 || left < least_told) return;
-  say(sweep_.options.common,
+  say(sweep_.options,
       fmt::format("sweeping {}: {}, {} at a time on {}, about {}", sweep_.plan.names(),
                   counted(std::ssize(missing_), "point"), at_once,
                   at_once == 1 ? counted(thread_count(), "thread") : "one thread each", readable_seconds(left)));
@@ -251,7 +250,7 @@ void dry_run_sweep(const Sweep& sweep, Results results) {
              fmt::format("at the peak, {} at a time", counted(static_cast<long long>(at_once), "point")),
              {Shown::bytes});
   }
-  deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
+  deliver(sweep.options, "dry_run", results, first ? first->second.times : StageTimes{});
 }
 
 /// First line of the case that is written, which tells sweeps by different verbs apart.
@@ -296,7 +295,7 @@ void refuse_misspelt_ratio(const SweptKey& key) {
 
 /// The key of a case that a swept one sets.
 std::string key_set_by(const SweepOptions& options, const SweptKey& key) {
-  return key.name == "ratio" ? "springs.kT" : key.name == SweepPlan::seed ? seed_key(options.common) : key.name;
+  return key.name == "ratio" ? "springs.kT" : key.name == SweepPlan::seed ? seed_key(options) : key.name;
 }
 
 /// Two keys that set the same one: the second would undo the first.
@@ -316,7 +315,7 @@ void check_different(const SweepOptions& options, const SweepPlan& plan) {
 void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
   check_different(options, plan);
   for (const SweptKey& key : plan.keys) {
-    CommonOptions first = options.common;
+    CommonOptions first = options;
     if (key.name != "ratio") refuse_misspelt_ratio(key);
     if (key.name == SweepPlan::seed) {
       first.seed = number_from<std::int64_t>(key.values.front());
@@ -345,12 +344,12 @@ std::string shortened(const std::vector<std::string>& values) {
 
 /// The case, and the files that it or a value of a key names, have to agree for --resume.
 std::string deciding_text(const Sweep& sweep) {
-  const auto folder = sweep.options.common.case_file.parent_path();
+  const auto folder = sweep.options.case_file.parent_path();
   std::vector<std::filesystem::path> named;
   for (const SweptKey& key : sweep.plan.keys)
     if (!key.numeric())
       std::ranges::transform(key.values, std::back_inserter(named), [&](const auto& v) { return folder / v; });
-  return heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.common.out) +
+  return heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.out) +
          note_of_files(sweep.base.document, named);
 }
 
@@ -365,7 +364,7 @@ std::string text_of_case(const Sweep& sweep) {
 
 /// Points of an earlier run of the same sweep.
 std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
-  const auto& out = sweep.options.common.out;
+  const auto& out = sweep.options.out;
   if (!sweep.options.resume) return {};
   if (!out)
     bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
@@ -446,11 +445,11 @@ void add_failures(Results& results, std::span<const SweepPoint> points, std::siz
 }
 
 void sweep(const SweepOptions& options) {
-  check_verb(options.verb);
-  if (options.common.seed && !options.seeds.empty())
+  check_verb(options.swept);
+  if (options.seed && !options.seeds.empty())
     bad_input("--seed and --seeds exclude each other", "both say which seed a point has", "Leave one of them out");
-  Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
-              read_base(options.verb, options.common)};
+  Sweep sweep{options, sweep_plan(options.swept, options.keys, options.seeds, options.side_by_side),
+              read_base(options.swept, options)};
   sweep.plan.waves = names_of_waves(sweep.base.document);
   check_keys(options, sweep.plan, sweep.base);
   std::optional<SweepRun> computed;
@@ -463,11 +462,11 @@ void sweep(const SweepOptions& options) {
                                        OutputPart::folder,
                                        {Sweep::table_name, Sweep::case_name}},
                                       {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
-  expect_results(options.common, parts, options.resume);
-  if (options.common.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
-  const auto lock = lock_out(options.common);
+  expect_results(options, parts, options.resume);
+  if (options.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
+  const auto lock = lock_out(options);
   SweepRun& run = computed.emplace(sweep, points_to_keep(sweep));
-  const auto& folder = options.common.out;
+  const auto& folder = options.out;
   if (folder) write_file(*folder / Sweep::case_name, text_of_case(sweep), true);
   run();
 
@@ -483,13 +482,13 @@ void sweep(const SweepOptions& options) {
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size())).warn();
   StageTimes times;
   times.add("points", run.seconds());
-  deliver(options.common,
+  deliver(options,
           run.stopped() ? "interrupted"
           : all_failed  ? "failed"
                         : "done",
           std::move(results), std::move(times), parts);
   if (run.stopped()) {
-    throw_stopped(options.common, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()),
+    throw_stopped(options, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()),
                   "Run the same command with --resume to do the rest");
   }
   if (all_failed)
@@ -548,9 +547,9 @@ void add_key_options(CLI::App& command, const std::shared_ptr<SweepOptions>& opt
 
 Run declare_sweep(CLI::App& command) {
   const auto options = std::make_shared<SweepOptions>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command
-      .add_option("--verb", options->verb,
+      .add_option("--verb", options->swept,
                   fmt::format("what is done at each point; solve where left out:\n{}", joined(swept_verbs())))
       ->type_name("VERB");
   add_key_options(command, options);
