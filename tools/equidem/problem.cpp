@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -326,10 +325,6 @@ const char* status_of(std::optional<std::int64_t> unstable_modes) {
   return !unstable_modes ? "unjudged" : *unstable_modes > 0 ? "unstable" : "solved";
 }
 
-ResultValue known(std::optional<std::int64_t> count) {
-  return count ? ResultValue(*count) : ResultValue(nullptr);
-}
-
 AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
   AssemblySummary summary{.kind = a.kind,
                           .discs = std::ssize(a.centres),
@@ -443,9 +438,9 @@ Results estimate_results(const SolveEstimate& e, double resident, double drawing
 }  // namespace
 
 void dry_run(const CommonOptions& given, const Problem& problem, const Results& further, AssemblyKeys keys,
-            const MoreMemory& more) {
+             const MoreMemory& more) {
   const double resident = resident_memory();
-  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+  const Effects effects = problem.effects();
   EquilibriumOptions options = problem.options();
   if (more.inertia) options.solver.method = SolverMethod::multifrontal;
   SolveEstimate estimate =
@@ -578,7 +573,7 @@ void leave_out_loose(Problem& problem) {
   const AssemblyKind kind = problem.resolved.assembly.kind;
   if (kind != AssemblyKind::packing && kind != AssemblyKind::file) return;
   Assembly& assembly = problem.assembly;
-  const Effects effects = derive_effects(assembly, problem.springs.springs, problem.resolved.rotation);
+  const Effects effects = problem.effects();
   LoadBearingNetwork network =
       load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem), LeaveOut::loose);
   const auto none_left = [&] { return network.part && network.part->discs.empty(); };

@@ -11,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/assembly/build.hpp"
@@ -53,6 +52,7 @@ struct Problem {
             .solver = resolved.solver,
             .mechanisms = by_chance ? Mechanisms::hold : Mechanisms::refuse};
   }
+  [[nodiscard]] Effects effects() const { return derive_effects(assembly, springs.springs, resolved.rotation); }
 };
 
 /// The assembly with its cells, or as it is where it has no contacts or its cells cannot be measured.
@@ -136,9 +136,6 @@ std::optional<TensionTheory> tension_theory(const Problem& problem);
 inline constexpr const char* stability_not_known =
     "NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does";
 
-/// A count, or null where it is not known.
-ResultValue known(std::optional<std::int64_t> count);
-
 /// Keys of the assembly in the JSON.
 enum class AssemblyKeys {
   size,  ///< title, discs, contacts
@@ -177,7 +174,7 @@ struct MoreMemory {
 };
 /// --dry-run: delivers the problem, further results, size, memory and work of a factorization.
 void dry_run(const CommonOptions& options, const Problem& problem, const Results& further, AssemblyKeys keys,
-            const MoreMemory& more = {});
+             const MoreMemory& more = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

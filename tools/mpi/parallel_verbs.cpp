@@ -200,7 +200,7 @@ void scatter_problem(const Ranks& ranks, PartProblem& p, bool homogenize) {
     whole.problem.emplace(
         prestressed(homogenize ? problem_of(std::move(resolved)) : build_problem(std::move(resolved))));
     const Problem& problem = *whole.problem;
-    whole.effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+    whole.effects = problem.effects();
     p.of_problem = problem_results(problem, whole.effects);
     p.problem.tension = problem.tension;
     if (homogenize) {

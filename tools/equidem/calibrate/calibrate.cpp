@@ -156,7 +156,7 @@ Results strength_results(const Problem& problem, const StrengthSample& first, co
   const Case& resolved = problem.resolved;
   const StrengthTargetCase& target = *resolved.strength_target;
   const StrengthOptions given = resolved.strength.value_or(StrengthOptions{});
-  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation));
+  Results out = problem_results(problem, problem.effects());
   add_unused(out, resolved);
   add_wanted_strengths(out, target.wanted);
   add_tests(out, target, first, found);
@@ -536,9 +536,7 @@ void add_motion(Results& out, const Problem& problem, double disc_density, const
         .add("wave_speeds/shear", "Vs =", speeds.shear, "m/s");
   }
   const std::vector<Inertia> inertia = inertia_of(a, disc_density, problem.resolved.assembly.body);
-  const ContactSprings& springs = problem.springs.springs;
-  const bool rotation = derive_effects(a, springs, problem.resolved.rotation).rotation;
-  const double omega = std::sqrt(element_bound(a, springs, inertia, rotation));
+  const double omega = std::sqrt(element_bound(a, problem.springs.springs, inertia, problem.effects().rotation));
   out.line("time step")
       .add("guaranteed_step", "any below", 2 / omega, "s is stable, from the highest frequency of a single contact");
 }
@@ -557,8 +555,7 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   const SpringConstants& k = found.springs;
   const Case& resolved = problem.resolved;
   const ElasticModuli& wanted = resolved.material->moduli;
-  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation),
-                                AssemblyKeys::size);
+  Results out = problem_results(problem, problem.effects(), AssemblyKeys::size);
   out.set("kN", k.kN).set("kT", k.kT).set("ratio", k.ratio()).set("weighting", to_string(resolved.weighting));
   add_wanted(out, wanted);
   add_method(out, found);
@@ -580,8 +577,7 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
 /// The range of Poisson's ratio of an assembly that has not the one wanted.
 Results feasible_results(const Problem& problem, const Calibration& range) {
   const Case& resolved = problem.resolved;
-  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation),
-                                AssemblyKeys::size);
+  Results out = problem_results(problem, problem.effects(), AssemblyKeys::size);
   add_wanted(out, resolved.material->moduli);
   add_range(out, range, resolved.material->moduli.plane);
   return out;

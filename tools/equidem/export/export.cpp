@@ -255,8 +255,7 @@ Exported export_to_matrix_market(const ExportOptions& options) {
   Stopwatch watch;
   const auto system = std::make_shared<const LinearSystem>(equations_of(*problem));
   made.times.add("assemble", watch.lap());
-  made.results = problem_results(
-      *problem, derive_effects(problem->assembly, problem->springs.springs, problem->resolved.rotation));
+  made.results = problem_results(*problem, problem->effects());
   made.results.line("equations")
       .add("unknowns", "", system->size(), "unknown", {Shown::count})
       .add("stiffness_entries", "", system->stiffness.first.back(), "entries in the lower triangle")

@@ -253,9 +253,9 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
       .set("mechanisms", described)
       .set("gear_modes", r.gear_modes)
       .set("local_mechanisms", r.mechanisms)
-      .set("self_stresses", known(r.self_stresses))
-      .set("negative_pivots", known(r.negative_pivots))
-      .set("unstable_modes", known(r.unstable_modes))
+      .set("self_stresses", r.self_stresses)
+      .set("negative_pivots", r.negative_pivots)
+      .set("unstable_modes", r.unstable_modes)
       .set("unstable_strains", r.unstable_strains);
 }
 
@@ -655,10 +655,10 @@ void dry_run_homogenization(const HomogenizeVerb& options, const Problem& proble
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
   dry_run(options, problem, results, AssemblyKeys::all,
-                 {.of_complex = problem.resolved.viscoelastic.has_value(),
-                  .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
-                                   (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
-                  .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
+          {.of_complex = problem.resolved.viscoelastic.has_value(),
+           .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
+                            (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
+           .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
 void homogenize(const HomogenizeVerb& options) {

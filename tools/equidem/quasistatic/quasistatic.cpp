@@ -65,7 +65,7 @@ struct Sequence {
     const Case& resolved = problem.resolved;
     const Assembly& assembly = problem.assembly;
     const ContactSprings& springs = problem.springs.springs;
-    effects = derive_effects(assembly, springs, resolved.rotation);
+    effects = problem.effects();
     strengths = with_place(resolved.where("strength"),
                            [&] { return contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{})); });
     cut = with_place(resolved.where("notch"), [&] { return contacts_across(assembly, resolved.notches); });
@@ -238,7 +238,7 @@ void add_peak(Results& out, const BreakageScene& scene, const EventPath& run) {
     add(*point);
     const auto leg = point - points.begin() - 1;
     out.note(leg < 0 ? ", at the start" : fmt::format(", at the end of leg {}", leg)).set("peak/event", nullptr);
-    out.set("peak/stress", point->stress ? ResultValue(*point->stress) : ResultValue(nullptr));
+    out.set("peak/stress", point->stress);
   }
 }
 
@@ -336,7 +336,7 @@ Results of_event(const BreakEvent& event, DrivenBy driven_by) {
       .set("energy_before", event.energy_before)
       .set("energy_after", event.energy_after)
       .set("energy_released", event.energy_released)
-      .set("unstable_modes", known(event.unstable_modes))
+      .set("unstable_modes", event.unstable_modes)
       .set("relative_residual", event.relative_residual)
       .set("ties", event.ties)
       .set("gap", event.gap)

@@ -89,7 +89,7 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
   }
   out.line("stability", stability(problem, e));
   if (e.unstable_modes > 0) out.warn();
-  out.set("negative_pivots", known(e.negative_pivots)).set("unstable_modes", known(e.unstable_modes));
+  out.set("negative_pivots", e.negative_pivots).set("unstable_modes", e.unstable_modes);
   return out.set("pivot_growth", e.pivot_growth);
 }
 

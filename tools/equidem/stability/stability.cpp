@@ -91,7 +91,7 @@ void add_inertia(Results& out, const Stability& s) {
                                *inertia.unstable_modes)
                  : "; the rotations alone are singular, so that they cannot be told apart");
   }
-  out.set("unstable_modes", known(inertia.unstable_modes));
+  out.set("unstable_modes", inertia.unstable_modes);
 }
 
 /// The factor of the forces at rest at which stability is lost.
@@ -568,7 +568,6 @@ void dry_run_survey(const StabilityCommand& options, Problem given) {
 
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
-  const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
   Results results;
   if (acted_on) results.line("forces at rest", "those of the loads and motions of the case count: one more solution");
   results.line("waves").set("waves", Results());
@@ -590,12 +589,12 @@ void dry_run_survey(const StabilityCommand& options, Problem given) {
   const auto inertia = inertia_of(assembly, judged.density, judged.body);
   check_magnitudes(assembly, springs, inertia);
   results.line("time step")
-      .add("element_bound_time_step", "", 2 / std::sqrt(element_bound(assembly, springs, inertia, effects.rotation)),
+      .add("element_bound_time_step", "",
+           2 / std::sqrt(element_bound(assembly, springs, inertia, problem.effects().rotation)),
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  dry_run(options, problem, results, AssemblyKeys::size,
-                 {.inertia = vectors_of_frequencies(options.frequencies)});
+  dry_run(options, problem, results, AssemblyKeys::size, {.inertia = vectors_of_frequencies(options.frequencies)});
 }
 
 void stability(const StabilityCommand& options) {
