@@ -302,13 +302,6 @@ SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const N
   return result;
 }
 
-std::optional<TensionTheory> tension_theory(const Problem& problem) {
-  if (!problem.tension || !problem.springs.constants || !problem.springs.springs.uniform()) return {};
-  const Lattice* lattice = problem.resolved.assembly.arrangement;
-  if (lattice == nullptr || lattice->tension == nullptr) return {};
-  return lattice->tension(problem.springs.constants->ratio());
-}
-
 void add_largest_void(Results& results, const Assembly& assembly) {
   const std::optional<EmptyCircle> found = largest_void(assembly);
   if (!found) return;

@@ -129,9 +129,6 @@ const char* status_of(std::optional<std::int64_t> unstable_modes);
 
 SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const NamedLoads& loads);
 
-/// Theory of the tension test on a lattice of equal springs; none for other assemblies and springs.
-std::optional<TensionTheory> tension_theory(const Problem& problem);
-
 /// The stability where the solver cannot judge it.
 inline constexpr const char* stability_not_known =
     "NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does";

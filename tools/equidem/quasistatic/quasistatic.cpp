@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <new>
 #include <utility>
 
 #include <CLI/CLI.hpp>

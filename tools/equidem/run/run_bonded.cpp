@@ -2,12 +2,10 @@
 #include "run/run_bonded.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <iterator>
-#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -500,80 +498,6 @@ Results BondedRun::advice(const Balance& balance) const {
   if (balance.most > Balance::doubtful)
     out.warning("", "that is much: compare with a shorter step before trusting the motion");
   return out;
-}
-
-namespace {
-
-constexpr std::int64_t finest = 4096;  // times as many steps as the case has
-
-/// Steps between which the user may interrupt.
-constexpr std::int64_t steps_at_once = 1000;
-
-double relative_distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double apart = 0, largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    apart = std::max(apart, std::abs(a[k] - b[k]));
-    largest = std::max(largest, std::abs(b[k]));
-  }
-  return apart > 0 ? apart / largest : 0;
-}
-
-std::vector<double> run_pilot(Case resolved) {
-  BondedRun pilot(std::move(resolved));
-  Simulation& simulation = pilot.simulation();
-  const std::int64_t steps = pilot.steps();
-  Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
-  for (std::int64_t done = 0; done < steps; done += steps_at_once) {
-    progress.update(static_cast<double>(done) / static_cast<double>(steps));
-    simulation.advance(std::min(steps_at_once, steps - done));
-  }
-  return searched_values(simulation.motions());
-}
-
-}  // namespace
-
-SearchedSetting searched_step(const BondedRun& given, double accuracy) {
-  if (given.goes_to_rest()) {
-    bad_input_at(given.where("run.until_rest"), "--accuracy does not act on a run to rest",
-                 "run.until_rest is its accuracy",
-                 "Leave it out, or set run.until_rest to the unbalanced force wanted");
-  }
-  const double duration = given.run().duration.value_or(0);
-  return {.refinement = {.accuracy = accuracy,
-                         .order = static_cast<double>(given.order()),
-                         .first = given.steps(),
-                         .most = finest * given.steps(),
-                         .unit = "steps",
-                         .apart = std::numbers::sqrt2,
-                         .distance = relative_distance},
-          .setting_of =
-              [duration](std::int64_t steps) {
-                return AccuracySetting{{"run.time_step", duration / static_cast<double>(steps)}};
-              },
-          .values_of = run_pilot,
-          .of =
-              "displacements at the end of the run, over the largest of them, against those of a step of 0, "
-              "extrapolated",
-          .knob = fmt::format("the time step, {:.6g} s in the case", given.time_step().step)};
-}
-
-std::vector<double> searched_values(const std::vector<DiscMotion>& motions) {
-  std::vector<double> values;
-  for (const DiscMotion& motion : motions) values.push_back(motion.u.x), values.push_back(motion.u.y);
-  return values;
-}
-
-ReachedAccuracy reached_by_step(const CaseSearch& search) {
-  ReachedAccuracy reached = search.reached();
-  std::vector<std::string> numbers;
-  double steps = 0;
-  for (const std::int64_t count : search.before()) {
-    steps += static_cast<double>(count);
-    numbers.push_back(fmt::format("{}", count));
-  }
-  reached.pilots_factor = steps / static_cast<double>(search.level());
-  reached.pilots = fmt::format("runs of {} steps", listed(std::move(numbers)));
-  return reached;
 }
 
 }  // namespace equidem

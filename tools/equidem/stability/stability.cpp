@@ -480,6 +480,25 @@ void write_survey(const CommonOptions& options, const Problem& problem, const St
     write_plot(folder, ratio_plot, plot_of_critical_ratio(s), options.overwrite);
 }
 
+/// Along the path through the Brillouin zone: dispersion/along in rad/m, dispersion/wave_vectors in 1/m and
+/// dispersion/squared_frequencies, ascending, in 1/s².
+std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey) {
+  std::vector<double> along, squared_frequencies;
+  std::vector<Vec2> wave_vectors;
+  for (const PathPoint& point : survey.path) {
+    along.push_back(point.along);
+    wave_vectors.push_back(point.at.q);
+    squared_frequencies.insert(squared_frequencies.end(), point.squared_frequencies.begin(),
+                               point.squared_frequencies.end());
+  }
+  const std::size_t branches = along.empty() ? 0 : squared_frequencies.size() / along.size();
+  ResultArray table = array_of("dispersion/squared_frequencies", "1/s²", std::move(squared_frequencies), branches);
+  table.rows = along.size();
+  table.stride = branches;
+  return {array_of("dispersion/along", "rad/m", std::move(along), 1),
+          array_of("dispersion/wave_vectors", "1/m", std::move(wave_vectors), 2), std::move(table)};
+}
+
 struct StabilityCommand : CommonOptions {
   int frequencies = StabilityOptions{}.natural_frequencies;
 };
