@@ -11,7 +11,6 @@
 #include <iterator>
 #include <new>
 #include <span>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -19,11 +18,8 @@
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
-#include "equidem/core/error.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/page/page.hpp"
 #include "equidem/output/quantities.hpp"
 
 namespace equidem {

@@ -5,11 +5,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
@@ -23,11 +20,9 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
-#include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/solver_choice.hpp"
 

@@ -3,14 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/vtk.hpp"
 
 namespace equidem {

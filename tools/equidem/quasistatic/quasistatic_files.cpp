@@ -2,9 +2,7 @@
 #include "quasistatic/quasistatic_files.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <optional>
 #include <system_error>
 #include <utility>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <iterator>
 #include <string_view>
@@ -20,7 +19,6 @@
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/vtk.hpp"
-#include "equidem/output/pictures/picture.hpp"
 
 #include "case_text.hpp"
 #include "solve/solve.hpp"

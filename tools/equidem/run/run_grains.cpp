@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
@@ -13,14 +12,11 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
-#include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
 #include "equidem/output/files/histories.hpp"
 #include "equidem/output/pictures/field_files.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/plots/plot.hpp"
-
-#include "case_text.hpp"
 
 namespace equidem {
 namespace {

@@ -19,7 +19,6 @@
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/waves/extreme_eigenvalues.hpp"
 #include "equidem/waves/natural_frequencies.hpp"
 
 #include "command.hpp"

@@ -23,7 +23,6 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/memory.hpp"
