@@ -31,15 +31,27 @@
 namespace equidem {
 namespace {
 
+struct StudyVerb : CommonOptions {
+  std::string file;
+  StudyOptions options;
+  std::optional<double> accuracy;
+};
+
+/// The command that repeats the study.
+std::string command_of(const StudyVerb& verb) {
+  std::string command = fmt::format("equidem study {} --seed {} --threads {} --budget {:g} --rounds {}", verb.file,
+                                    verb.options.seed, thread_count(), verb.options.budget, verb.options.least_rounds);
+  if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
+  return command;
+}
+
 /// A study, its result and how it was run.
 struct StudyReport {
+  const StudyVerb& verb;
   const Study& study;
-  StudyResult result;
-  StudyOptions options;
-  std::string command;   ///< command that repeats the study
   std::string checksum;  ///< of its settings on this machine and build
-  std::optional<double> accuracy;
-  std::optional<Recommendation> recommendation;  ///< set if an accuracy is requested
+  StudyResult result = {};
+  std::optional<Recommendation> recommendation = {};  ///< set if an accuracy is requested
 };
 
 std::string cell(double value) {
@@ -159,10 +171,11 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> by_method(const St
 Results study_results(const StudyReport& report) {
   const Study& study = report.study;
   const StudyResult& result = report.result;
+  const StudyOptions& options = report.verb.options;
   Results out;
   out.set("study", study.name).set("title", study.title).set("complete", result.complete);
-  out.set("command", report.command).set("machine", machine_results());
-  out.set("seed", report.options.seed).set("rounds", result.rounds).set("budget", report.options.budget);
+  out.set("command", command_of(report.verb)).set("machine", machine_results());
+  out.set("seed", options.seed).set("rounds", result.rounds).set("budget", options.budget);
   out.set("checksum", report.checksum).block(study.title + "\n\n");
   std::vector<Results> settings, curves, fronts, recommendations;
   for (const StudyRow& row : result.rows) settings.push_back(row_results(report, row));
@@ -180,14 +193,15 @@ Results study_results(const StudyReport& report) {
   out.list("quantities", {quantity_results(study)}).line("machine", machine_text());
   out.line("timing", fmt::format("{} after one to warm up, all settings in an order drawn anew each time (seed {}); "
                                  "median, quartiles apart, number n",
-                                 counted(result.rounds, "round"), report.options.seed));
+                                 counted(result.rounds, "round"), options.seed));
   out.block("\n").table("", table_of(report));
   if (!fronts.empty()) out.block("\n* on a front: nothing is both faster and as accurate\n");
   if (std::ranges::any_of(result.curves, [](const StudyCurve& curve) { return curve.order.has_value(); }))
     out.block("\norders, errors as h^p over the finest levels (95 % interval)\n");
   out.list("orders", std::move(curves));
   out.block("\n" + (result.advice.empty() ? "" : result.advice + "\n"));
-  if (report.accuracy) out.set("accuracy", *report.accuracy).list("recommendations", std::move(recommendations));
+  if (report.verb.accuracy)
+    out.set("accuracy", *report.verb.accuracy).list("recommendations", std::move(recommendations));
   for (const std::string& note : study.notes) out.block(note + "\n");
   out.set("settings", settings).set("fronts", fronts);
   return out.set("advice", result.advice).set("notes", study.notes);
@@ -245,12 +259,6 @@ Plot study_plot(const StudyReport& report) {
 std::string study_plot_name(const Study& study) {
   return study.name + "_" + study.quantity;
 }
-
-struct StudyVerb : CommonOptions {
-  std::string file;
-  StudyOptions options;
-  std::optional<double> accuracy;
-};
 
 /// The number that a study measures.
 double measured_number(const Delivery& result, const std::string& measure) {
@@ -314,13 +322,6 @@ Study study_of_file(const std::filesystem::path& path, const CommonOptions& opti
   }
   study.notes = {"Times are of the whole verb without its report and files: reading the case, and computing."};
   return study;
-}
-
-std::string command_of(const StudyVerb& verb) {
-  std::string command = fmt::format("equidem study {} --seed {} --threads {} --budget {:g} --rounds {}", verb.file,
-                                    verb.options.seed, thread_count(), verb.options.budget, verb.options.least_rounds);
-  if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
-  return command;
 }
 
 /// Round 0 gives the value, later ones the times.
@@ -403,9 +404,7 @@ void check(const StudyVerb& verb) {
 }
 
 void refuse_all_failed(const StudyReport& report) {
-  for (const StudyRow& row : report.result.rows) {
-    if (row.refusal.empty()) return;
-  }
+  if (std::ranges::any_of(report.result.rows, [](const StudyRow& row) { return row.refusal.empty(); })) return;
   computation_failed("none of the settings could be computed",
                      "the first: " + without_full_stop(report.result.rows.front().refusal), "");
 }
@@ -414,7 +413,7 @@ void refuse_unreached(const StudyReport& report) {
   if (!report.recommendation)
     computation_failed("this study has no errors", "no setting has a reference value", "Leave out --accuracy");
   if (report.recommendation->row) return;
-  computation_failed(fmt::format("no setting reaches {:g}", *report.accuracy),
+  computation_failed(fmt::format("no setting reaches {:g}", *report.verb.accuracy),
                      fmt::format("the best one reaches {:.2g}", report.recommendation->best),
                      "Ask for less, or study finer settings");
 }
@@ -456,12 +455,12 @@ void run_verb(const StudyVerb& verb) {
     write_samples(*folder / "samples.csv", samples_table(study, done, identity));
   };
   StudySamples samples;
-  std::optional<StudyReport> made;
+  StudyReport report{verb, study, identity};
   const auto plot = std::make_shared<Plot>();
   const auto draw = [name = study_plot_name(study), plot](const CommonOptions& into) {
     if (!plot->series.empty()) write_plot(*into.out, name, *plot, true);
   };
-  const auto write = [&](const CommonOptions& into) { write_csv(*into.out / "study.csv", study_table(*made), true); };
+  const auto write = [&](const CommonOptions& into) { write_csv(*into.out / "study.csv", study_table(report), true); };
   const std::vector<OutputPart> parts{
       {"samples.csv", [&](const CommonOptions& /*into*/) { save(samples); }, OutputPart::folder, {"samples.csv"}},
       {"study.csv", write, OutputPart::folder, {"study.csv"}},
@@ -475,13 +474,7 @@ void run_verb(const StudyVerb& verb) {
     since_saved.lap();
   });
 
-  StudyReport& report = made.emplace(StudyReport{.study = study,
-                                                 .result = evaluate(study, samples),
-                                                 .options = verb.options,
-                                                 .command = command_of(verb),
-                                                 .checksum = identity,
-                                                 .accuracy = verb.accuracy,
-                                                 .recommendation = {}});
+  report.result = evaluate(study, samples);
   if (verb.accuracy) report.recommendation = recommend(report.result, *verb.accuracy);
   Results results = study_results(report);
   if (samples.stopped)
