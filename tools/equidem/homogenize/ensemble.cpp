@@ -31,15 +31,18 @@ namespace equidem {
 namespace {
 
 constexpr const char* statistics_name = "ensemble.csv";
-constexpr std::array ensemble_plot_names{"shear_modulus", "poisson_ratio", "scatter"};
 
 /// An ensemble as it was asked for, and what came of it.
 struct EnsembleResult {
   std::string title;
-  EnsemblePlan plan;
-  std::optional<double> accuracy;  ///< relative, wanted
-  std::vector<EnsembleSample> samples;
-  EnsembleStatistics statistics;
+  EnsemblePlan plan = {};
+  std::optional<double> accuracy = {};  ///< relative, wanted
+  std::vector<EnsembleSample> samples = {};
+  EnsembleStatistics statistics = {};
+  std::function<void()> save_samples = {};  ///< writes the table of the samples
+  std::optional<Error> failure = {};
+
+  [[nodiscard]] bool complete() const { return !failure || failure->kind() != ErrorKind::interrupted; }
 };
 
 std::string with_unit(const EnsembleQuantity& quantity, const std::string& what = "") {
@@ -141,8 +144,8 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
     }
     plot.series.push_back(fit);
   }
-  const bool bounded = std::any_of(low.y.begin(), low.y.end(), [](double y) { return std::isfinite(y); });
-  if (bounded) plot.series.insert(plot.series.end(), {low, high});
+  if (std::ranges::any_of(low.y, [](double y) { return std::isfinite(y); }))
+    plot.series.insert(plot.series.end(), {low, high});
   plot.series.push_back(mean);
   return plot;
 }
@@ -179,19 +182,20 @@ Plot plot_scatter(const EnsembleResult& result) {
   return plot;
 }
 
-/// Name and plot: means with their confidence limits and all samples against size, of G and of nu (plane strain); the
-/// scatter of K, G and nu against size, where they scatter.
-std::vector<std::pair<std::string, Plot>> ensemble_plots(const EnsembleResult& result) {
-  std::vector<std::pair<std::string, Plot>> plots;
-  const bool any = std::any_of(result.samples.begin(), result.samples.end(),
-                               [](const EnsembleSample& sample) { return !sample.refused(); });
-  if (!any) return plots;
-  plots.emplace_back(ensemble_plot_names[0], plot_means(result, shear_modulus, "shear modulus G, Pa"));
-  plots.emplace_back(ensemble_plot_names[1], plot_means(result, poisson_ratio, "Poisson's ratio ν (plane strain)"));
-  Plot scatter = plot_scatter(result);
-  if (!scatter.series.empty()) plots.emplace_back(ensemble_plot_names[2], std::move(scatter));
-  return plots;
-}
+struct EnsemblePlot {
+  const char* name;
+  Plot (*of)(const EnsembleResult& result);
+};
+
+/// Means with their confidence limits and all samples against size, of G and of nu (plane strain); the scatter of K, G
+/// and nu against size, without series where they do not scatter.
+constexpr std::array ensemble_plots{
+    EnsemblePlot{"shear_modulus",
+                 [](const EnsembleResult& r) { return plot_means(r, shear_modulus, "shear modulus G, Pa"); }},
+    EnsemblePlot{
+        "poisson_ratio",
+        [](const EnsembleResult& r) { return plot_means(r, poisson_ratio, "Poisson's ratio ν (plane strain)"); }},
+    EnsemblePlot{"scatter", plot_scatter}};
 
 /// K, G and nu: the others follow from them.
 constexpr std::size_t reported_quantities = 3;
@@ -418,7 +422,7 @@ Assembly first_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed
   }
 }
 
-/// The case but for sizes and samples, of which more may be asked later.
+/// The case without sizes and samples, of which more may be asked later.
 std::string continued_part(CommonOptions options, const std::filesystem::path& folder) {
   options.set.emplace_back("ensemble={discs = [3], samples = 2}");
   return to_toml(read_case(options), folder);
@@ -450,8 +454,8 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
 std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
                                       const std::vector<EnsembleSample>& kept) {
   std::map<std::pair<std::int64_t, std::uint64_t>, EnsembleSample> all;
-  for (const EnsembleSample& sample : done) all.emplace(std::pair(sample.discs, sample.seed), sample);
-  for (const EnsembleSample& sample : kept) all.emplace(std::pair(sample.discs, sample.seed), sample);
+  for (const auto* samples : {&done, &kept})
+    for (const EnsembleSample& sample : *samples) all.emplace(std::pair(sample.discs, sample.seed), sample);
   std::vector<EnsembleSample> result;
   for (auto& [key, sample] : all) result.push_back(std::move(sample));
   return result;
@@ -545,37 +549,22 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
 }
 
 /// Samples, statistics and plots; the latter where the sampling came to its end.
-struct EnsembleOutput {
-  std::optional<EnsembleResult> result = {};
-  std::function<void()> save_samples = {};  ///< writes the table of the samples
-  std::optional<Error> failure = {};
-  std::vector<std::pair<std::string, Plot>> plots = {};
-
-  [[nodiscard]] bool complete() const { return !failure || failure->kind() != ErrorKind::interrupted; }
-};
-
-std::vector<OutputPart> output_parts(const std::shared_ptr<const EnsembleOutput>& made) {
+std::vector<OutputPart> output_parts(const std::shared_ptr<const EnsembleResult>& made) {
   const auto save = [=](const CommonOptions& /*into*/) { made->save_samples(); };
   const auto write_statistics = [=](const CommonOptions& into) {
-    if (made->complete()) write_csv(*into.out / statistics_name, statistics_table(made->result->statistics), true);
+    if (made->complete()) write_csv(*into.out / statistics_name, statistics_table(made->statistics), true);
   };
   std::vector<OutputPart> parts{{"samples.csv", save, OutputPart::folder, {"samples.csv", "case.toml"}},
                                 {statistics_name, write_statistics, OutputPart::folder, {statistics_name}}};
-  for (const char* name : ensemble_plot_names) {
+  for (const EnsemblePlot& plot : ensemble_plots) {
     const auto draw = [=](const CommonOptions& into) {
-      for (const auto& [own, plot] : made->plots)
-        if (own == name) write_plot(*into.out, own, plot, true);
+      if (!made->complete() || std::ranges::all_of(made->samples, &EnsembleSample::refused)) return;
+      const Plot drawn = plot.of(*made);
+      if (!drawn.series.empty()) write_plot(*into.out, plot.name, drawn, true);
     };
-    parts.push_back({name, draw, OutputPart::page, plot_files(name)});
+    parts.push_back({plot.name, draw, OutputPart::page, plot_files(plot.name)});
   }
   return parts;
-}
-
-void deliver_ensemble(const CommonOptions& options, const std::vector<OutputPart>& parts, EnsembleOutput& made,
-                      Results results, StageTimes times) {
-  if (made.complete()) made.plots = ensemble_plots(*made.result);
-  results.set("complete", made.complete());
-  deliver(options, "done", std::move(results), std::move(times), parts, made.failure);
 }
 
 /// Fewer bodies jam earlier, so that many of their cells could not be packed.
@@ -625,9 +614,9 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
 
 void homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
-  const auto made = std::make_shared<EnsembleOutput>();
-  EnsembleResult& result = made->result.emplace(EnsembleResult{
-      .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}});
+  const auto made = std::make_shared<EnsembleResult>(
+      EnsembleResult{.title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy});
+  EnsembleResult& result = *made;
   result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
   Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan));
@@ -659,8 +648,8 @@ void homogenize_ensemble(const CommonOptions& options, const Case& resolved, boo
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
   if (sampled.stopped)
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted)).warn();
-  made->save_samples = [&] { save(result.samples); };
-  made->failure = failure_of([&] {
+  result.save_samples = [&] { save(result.samples); };
+  result.failure = failure_of([&] {
     if (sampled.stopped)
       throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
                     "Run the same command with --resume to do the rest");
@@ -668,7 +657,8 @@ void homogenize_ensemble(const CommonOptions& options, const Case& resolved, boo
       computation_failed("none of the cells has moduli",
                          "the first: " + without_full_stop(result.samples.front().refusal), "");
   });
-  deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
+  results.set("complete", result.complete());
+  deliver(options, "done", std::move(results), std::move(times), parts, result.failure);
 }
 
 void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
@@ -678,7 +668,8 @@ void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, 
                  fmt::format("Set {}", joins_sides(resolved.assembly)));
   }
   expect_json(options);
-  const auto made = std::make_shared<EnsembleOutput>();
+  const auto made = std::make_shared<EnsembleResult>(EnsembleResult{.title = resolved.title, .accuracy = accuracy});
+  EnsembleResult& result = *made;
   const std::vector<OutputPart> parts = output_parts(made);
   if (!options.dry_run) expect_results(options, parts);
   const auto lock = lock_out(options);
@@ -686,14 +677,14 @@ void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, 
   if (resolved.assembly.packing) wanted.smallest = smallest_packing;
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   if (options.dry_run) {
-    std::vector<std::string> pilots;
-    for (const EnsembleSetting& pilot : accuracy_pilots(wanted))
-      pilots.push_back(fmt::format("{} cells of {} discs", pilot.samples, pilot.discs));
+    const auto pilots = accuracy_pilots(wanted);
+    const auto described = [](const EnsembleSetting& pilot) {
+      return fmt::format("{} cells of {} discs", pilot.samples, pilot.discs);
+    };
     results.append(accuracy_plan(accuracy, fmt::format("first {}; the size and number of cells that reach it follow "
                                                        "from them, with at most {:.0e} discs in all",
-                                                       joined(pilots, " and "), wanted.most_discs)));
-    const auto pilot_cells = accuracy_pilots(wanted);
-    results.append(memory_of_cells(resolved, {pilot_cells.begin(), pilot_cells.end()}, wanted.first_seed));
+                                                       joined(pilots, described, " and "), wanted.most_discs)));
+    results.append(memory_of_cells(resolved, {pilots.begin(), pilots.end()}, wanted.first_seed));
     return deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
   }
   const auto& folder = options.out;
@@ -707,18 +698,16 @@ void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, 
       sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
                          wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
-  made->failure = sampled.failure;
+  result.failure = sampled.failure;
   if (sampled.stopped)
-    made->failure = Error(
+    result.failure = Error(
         ErrorKind::interrupted, "stopped as asked",
         fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
   const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
-  const EnsembleResult& result = made->result.emplace(EnsembleResult{.title = resolved.title,
-                                                                     .plan = sampled.plan,
-                                                                     .accuracy = accuracy,
-                                                                     .samples = std::move(sampled.samples),
-                                                                     .statistics = std::move(sampled.statistics)});
-  made->save_samples = [&] { save(result.samples); };
+  result.plan = sampled.plan;
+  result.samples = std::move(sampled.samples);
+  result.statistics = std::move(sampled.statistics);
+  result.save_samples = [&] { save(result.samples); };
   if (folder) {
     CommonOptions chosen = options;
     chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}}}", sampled.chosen.discs,
@@ -726,8 +715,9 @@ void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, 
     write_case(options, read_case(chosen), note_of_files(resolved.document));
   }
   results.append(ensemble_results(result));
-  if (sampled.estimated > 0 || !made->failure) results.append(accuracy_results(reached));
-  deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
+  if (sampled.estimated > 0 || !result.failure) results.append(accuracy_results(reached));
+  results.set("complete", result.complete());
+  deliver(options, "done", std::move(results), std::move(times), parts, result.failure);
 }
 
 }  // namespace equidem
