@@ -22,6 +22,7 @@
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
+#include "case_text.hpp"
 #include "command.hpp"
 #include "problem.hpp"
 #include "quasistatic/quasistatic_files.hpp"
@@ -45,6 +46,10 @@ Problem build(Case resolved) {
                  "Keep one; loads that stay are [[dead_load]]");
   }
   return problem;
+}
+
+bool is_frictional(const Case& resolved) {
+  return resolved.strength && resolved.strength->after_breaking == AfterBreaking::frictional;
 }
 
 /// Everything that a path refers to.
@@ -126,10 +131,7 @@ struct Sequence {
     return solver;
   }
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
-  [[nodiscard]] bool frictional() const {
-    const auto& strength = problem.resolved.strength;
-    return strength && strength->after_breaking == AfterBreaking::frictional;
-  }
+  [[nodiscard]] bool frictional() const { return is_frictional(problem.resolved); }
   /// mu of contacts without a bond; none: they are not frictional.
   [[nodiscard]] std::optional<double> residual_friction() const {
     if (!frictional()) return {};
@@ -263,9 +265,8 @@ void add_energies(Results& out, const EventPath& run) {
 
 void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run) {
   constexpr int most = 5;
-  if (!run.idle().empty()) {
+  if (!run.idle().empty())
     out.line("idle", fmt::format("{} from the start, which can carry no load", named(scene.assembly, run.idle())));
-  }
   std::int64_t loosened = 0, events = 0;
   for (std::size_t k = 0; k < run.events().size(); ++k) {
     const std::vector<std::int32_t>& discs = run.events()[k].loosened;
@@ -280,14 +281,15 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
 
 /// Rattlers between frictional contacts: these may close again.
 void add_let_go(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
-  const std::vector<std::int32_t>& at_first = run.idle();
-  const auto without = [](const std::vector<std::int32_t>& discs, const std::vector<std::int32_t>& others) {
-    std::vector<std::int32_t> left;
+  using Discs = std::vector<std::int32_t>;
+  const Discs& at_first = run.idle();
+  const auto without = [](const Discs& discs, const Discs& others) {
+    Discs left;
     std::ranges::set_difference(discs, others, std::back_inserter(left));
     return left;
   };
-  const std::vector<std::int32_t> untouched = run.untouched(), now = without(untouched, at_first),
-                                  on_contacts = without(without(run.loose(), untouched), at_first);
+  const Discs untouched = run.untouched(), now = without(untouched, at_first),
+              on_contacts = without(without(run.loose(), untouched), at_first);
   if (!at_first.empty()) out.line("idle", fmt::format("{}: nothing touched at first", named(scene.assembly, at_first)));
   if (!now.empty()) out.line("came loose", fmt::format("{}: nothing touched at the end", named(scene.assembly, now)));
   if (!on_contacts.empty()) {
@@ -323,8 +325,8 @@ void add_solver(Results& out, const EventPath& run) {
 }
 
 Results of_event(const BreakEvent& event, DrivenBy driven_by) {
-  Results one;
-  one.set("lambda", event.lambda)
+  return Results()
+      .set("lambda", event.lambda)
       .set("contact", event.contact)
       .set("mode", to_string(event.mode))
       .set("stress", std::vector<double>{event.stress.xx, event.stress.yx, event.stress.xy, event.stress.yy}, "Pa",
@@ -340,7 +342,6 @@ Results of_event(const BreakEvent& event, DrivenBy driven_by) {
       .set("ties", event.ties)
       .set("gap", event.gap)
       .set("loosened", std::vector<std::int64_t>(event.loosened.begin(), event.loosened.end()));
-  return one;
 }
 
 Results curve_results(const LoadCurve& curve) {
@@ -356,7 +357,6 @@ void add_events_and_curves(Results& out, const BreakageScene& scene, const Event
   out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
 }
 
-/// Strengths, path and control.
 Results path_results(const Sequence& sequence) {
   Results out;
   const BreakageScene scene = sequence.scene();
@@ -384,7 +384,6 @@ Results path_results(const Sequence& sequence) {
   return out.set("control", to_string(path.control));
 }
 
-/// Events, avalanches, energies, what comes loose, stability, residual.
 Results quasistatic_results(const Sequence& sequence) {
   const BreakageScene scene = sequence.scene();
   const EventPath& run = sequence.run();
@@ -422,8 +421,7 @@ void dry_run_path(const CommonOptions& options, Sequence& sequence) {
 /// Whether the table of events does not hold all that is needed to go on from it: forces of frictional contacts depend
 /// on the path, and frames are written of states on it.
 bool keeps_state(const Case& resolved) {
-  const bool frictional = resolved.strength && resolved.strength->after_breaking == AfterBreaking::frictional;
-  return frictional || resolved.quasistatic.frame_every != 0;
+  return is_frictional(resolved) || resolved.quasistatic.frame_every != 0;
 }
 
 /// The path so far, written whole or not at all.
@@ -431,7 +429,7 @@ class PathCheckpoint {
  public:
   PathCheckpoint(const CommonOptions& options, const Sequence& sequence)
       : path_(*options.out / path_checkpoint_name),
-        case_text_(deciding_keys_of_path(sequence.problem.resolved, *options.out)) {}
+        case_text_(to_toml(deciding_tables(sequence.problem.resolved.document, Decided::path), *options.out)) {}
 
   void write(const Sequence& sequence, EventFrames* frames) const {
     Checkpoint checkpoint;
@@ -561,7 +559,6 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
   return stop;
 }
 
-/// A path, and how it was left.
 struct ComputedPath {
   std::string note{};  ///< of the files that the case reads
   std::optional<Sequence> sequence{};
