@@ -148,7 +148,6 @@ void prepare(const CommonOptions& options) {
   set_progress_shown(!options.quiet);
 }
 
-/// The key that --seed sets: a packing has a seed of its own.
 const char* seed_key(const CommonOptions& options) {
   const TomlValue root = casefile::read_document(options.case_file, options.set);
   const TomlValue* assembly = root.find("assembly");

@@ -85,7 +85,6 @@ std::string reference(const std::string& page, int number) {
   return fmt::format(".BR {} ({})", escaped(page), number);
 }
 
-/// Arguments or options, each with its description.
 std::string options_of(const CLI::App& command, bool positional) {
   std::string out;
   for (const CLI::Option* option : command.get_options()) {

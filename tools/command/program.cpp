@@ -69,7 +69,6 @@ void check_refusals(const Program& program, const std::string& word) {
   casefile::refuse_removed_word(word, program.name);
 }
 
-/// Report an error of CLI11 as one of the program.
 [[noreturn]] void parse_failure(const Program& program, const CLI::App& verb, const CLI::ParseError& error) {
   const std::string help = fmt::format("'{} {} --help' lists its options", program.name, verb.get_name());
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
@@ -88,7 +87,6 @@ void check_refusals(const Program& program, const std::string& word) {
   bad_input(problem, "", help);
 }
 
-/// The manual page of a verb or topic, or the completion for bash.
 std::string generated_text(const Program& program, const CLI::App& app, const std::string& kind,
                            const std::string& name) {
   if (kind == completion_topic) {

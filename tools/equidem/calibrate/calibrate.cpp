@@ -38,6 +38,8 @@
 namespace equidem {
 namespace {
 
+constexpr double quotient_rounding = 1e-12;  // of a quotient that is 1 but for rounding
+
 /// The second strength beside the tensile one.
 struct SecondStrength {
   std::string key, unit, unit_of_ratio;
@@ -99,9 +101,8 @@ void add_mean(Results& out, const std::string& key, const std::string& name, con
   std::isfinite(mean.standard_deviation)
       ? out.add(place + "_deviation", "samples scatter by", mean.standard_deviation, unit, {.digits = 2})
       : out.set(place + "_deviation", nullptr);
-  constexpr double rounding = 1e-12;
   const double off = mean.mean / wanted - 1;
-  std::abs(off) > rounding ? out.add(place + "_off", "off by", off, "", {Shown::percent})
+  std::abs(off) > quotient_rounding ? out.add(place + "_off", "off by", off, "", {Shown::percent})
                            : out.note(", as wanted").set(place + "_off", off);
 }
 
@@ -172,7 +173,6 @@ std::int64_t number_of_samples(const Case& resolved) {
   return resolved.assembly.random() || scattered ? resolved.strength_target->samples : 1;
 }
 
-/// The assembly of the k-th sample.
 Assembly sample_assembly(Case resolved, std::uint64_t k) {
   resolved.assembly.delaunay.seed += k;
   if (resolved.assembly.packing) resolved.assembly.packing->seed += k;
@@ -323,7 +323,6 @@ void calibrate_strengths(const CommonOptions& options, const std::optional<std::
   strengths_out.say_written(options);
 }
 
-/// One value, or the two ends of a range.
 std::string range_text(double first, double last) {
   return first == last ? fmt::format("{:.9g}", first) : fmt::format("{:.6g} .. {:.6g}", first, last);
 }
@@ -391,9 +390,8 @@ Results engine_springs_results(const Assembly& assembly, const ContactSprings& s
 }
 
 std::string percent_beside(double value, double wanted) {
-  constexpr double rounding = 1e-12;
   const double off = value / wanted - 1;
-  return std::abs(off) < rounding ? "as wanted" : fmt::format("{:+.3g} %", 100 * off);
+  return std::abs(off) < quotient_rounding ? "as wanted" : fmt::format("{:+.3g} %", 100 * off);
 }
 
 std::string shown_springs(const SpringConstants& k) {
@@ -442,11 +440,6 @@ void add_method(Results& out, const Calibration& found) {
                            ? "a uniform displacement gradient at its boundary, stiffer than the large sample"
                            : "the tractions of a uniform stress at its boundary, softer than the large "
                              "sample"));
-}
-
-/// Moduli of an assembly with their keys alone.
-Results moduli_keys(const EffectiveModuli& m) {
-  return moduli_results(m, "", true).set("anisotropy", m.anisotropy);
 }
 
 void add_reached(Results& out, const Calibration& found) {
@@ -510,7 +503,7 @@ void add_mean_field(Results& out, const MeanFieldGuess& guess, const Case& resol
     return;
   }
   const EffectiveModuli& m = *guess.moduli;
-  out.set("mean_field/achieved", moduli_keys(m));
+  out.set("mean_field/achieved", moduli_results(m, "", true).set("anisotropy", m.anisotropy));
   out.line("",
            fmt::format("with them this assembly has G = {:.6g} Pa ({}), K = {:.6g} Pa ({}), nu = {:.6g} in plane {} "
                        "in place of {:.6g}",
@@ -520,7 +513,6 @@ void add_mean_field(Results& out, const MeanFieldGuess& guess, const Case& resol
                        wanted.poisson_ratio));
 }
 
-/// Density, wave speeds and the time step that it allows.
 void add_motion(Results& out, const Problem& problem, double disc_density, const ElasticModuli& wanted) {
   const Assembly& a = problem.assembly;
   const double fraction = a.solid_fraction(), density = disc_density * fraction;
@@ -573,7 +565,6 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   return out;
 }
 
-/// The range of Poisson's ratio of an assembly that has not the one wanted.
 Results feasible_results(const Problem& problem, const Calibration& range) {
   const Case& resolved = problem.resolved;
   Results out = problem_results(problem, problem.effects(), AssemblyKeys::size);
@@ -597,7 +588,6 @@ CalibrateOptions calibrate_options(const Case& resolved) {
           .static_only = resolved.material->static_only};
 }
 
-/// The text of the springs file, with the moduli that it was made for and what shows them.
 std::string text_of_springs(const Case& resolved, const Assembly& assembly, const Calibration& found) {
   const ElasticModuli& m = resolved.material->moduli;
   const std::string moduli =

@@ -46,7 +46,6 @@ struct Exported {
   }
 };
 
-/// Options of the verb.
 struct ExportOptions : CommonOptions {
   std::string to;                   ///< name of the format
   std::vector<std::string> accept;  ///< words of EngineFeatureRow::accept
@@ -54,7 +53,6 @@ struct ExportOptions : CommonOptions {
 
 constexpr double usual_density = 2500;  // kg/m³, where a case in equilibrium gives none: it does not change the rest
 
-/// A model with the case that it comes from.
 struct CaseModel {
   EngineModel model;
   Exported exported;

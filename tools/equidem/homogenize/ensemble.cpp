@@ -49,7 +49,6 @@ std::string with_unit(const EnsembleQuantity& quantity, const std::string& what 
   return quantity.name + what + (quantity.modulus ? "_Pa" : "");
 }
 
-/// One row per cell: discs, seed, discs_built, the moduli, refusal.
 Table samples_table(const std::vector<EnsembleSample>& samples) {
   Table table;
   table.add("discs", samples, &EnsembleSample::discs).add("seed", samples, &EnsembleSample::seed);
@@ -80,8 +79,6 @@ std::vector<EnsembleSample> read_samples(const std::filesystem::path& path) {
   return samples;
 }
 
-/// One row per size: discs, mean_discs, samples, refused, and of each quantity the mean, standard deviation, standard
-/// error and confidence limits.
 Table statistics_table(const EnsembleStatistics& statistics) {
   const auto& sizes = statistics.sizes;
   Table table;
@@ -337,7 +334,6 @@ void add_sizes(Results& out, const EnsembleStatistics& statistics) {
   out.set("ensemble", sizes);
 }
 
-/// Dependence of a quantity on the size of the cell, and the required size.
 void add_dependence(Results& out, const EnsembleResult& result, std::size_t quantity) {
   const SizeDependence& d = result.statistics.dependence[quantity];
   const std::string key = std::string("/") + quantity_keys[quantity];
@@ -361,9 +357,6 @@ void add_dependence(Results& out, const EnsembleResult& result, std::size_t quan
           Results().set("one_cell", needed(1)).set("mean_of_samples", needed(result.plan.samples)));
 }
 
-/// Keys: ensemble: list of {discs, mean_discs, samples, refused, the quantities of `homogenize`, each {mean,
-/// standard_deviation, standard_error, confidence_interval}}; scatter_exponent, size_limit and needed_discs of each
-/// quantity but the anisotropy; title, confidence, accuracy, refusals.
 Results ensemble_results(const EnsembleResult& result) {
   const EnsembleStatistics& statistics = result.statistics;
   Results out;
@@ -428,7 +421,6 @@ std::string continued_part(CommonOptions options, const std::filesystem::path& f
   return to_toml(read_case(options), folder);
 }
 
-/// Samples of an earlier run of the same case.
 /// \param note of the files that the case reads
 std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool resume, const std::string& note) {
   if (!resume) return {};
@@ -524,7 +516,6 @@ void dry_run_ensemble(const CommonOptions& options, const Case& resolved, const 
   deliver(options, "dry_run", results, {});
 }
 
-/// Builds and homogenizes one cell.
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
   const Assembly cell = build_cell(resolved, discs, seed);
   return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));

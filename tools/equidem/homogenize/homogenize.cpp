@@ -32,7 +32,6 @@
 namespace equidem {
 namespace {
 
-/// Names of the table and of the plot.
 constexpr const char* viscoelastic_table_name = "viscoelastic.csv";
 constexpr const char* moduli_over_frequency = "moduli_over_frequency";
 
@@ -81,8 +80,6 @@ Results frequency_row(const HarmonicStiffness& one) {
   return row;
 }
 
-/// The JSON has viscoelastic: {normal, tangential, solver, factor_bytes, harmonic: [{frequency, moduli as {storage,
-/// loss}, ...}, ...]}.
 Results viscoelastic_results(const Viscoelasticity& springs, const ViscoelasticStiffness& result) {
   Results out;
   out.block(
@@ -109,7 +106,6 @@ Results viscoelastic_results(const Viscoelasticity& springs, const ViscoelasticS
   return out;
 }
 
-/// One row for each frequency.
 Table viscoelastic_table(const ViscoelasticStiffness& result) {
   Table table;
   const auto& rows = result.harmonic;
@@ -369,7 +365,6 @@ void add_order(Results& out, const BoundedStiffness& h, const ContactSprings& sp
   out.set("order", steps);
 }
 
-/// Name of a bound or an estimate in the table.
 std::string name_of(const std::string& key) {
   return key == "voigt"                     ? "Voigt: all discs follow the strain"
          : key == "uniform_stress_estimate" ? "uniform stress: an estimate, no bound"
@@ -547,7 +542,6 @@ struct Harmonic {
   ViscoelasticStiffness stiffness;
 };
 
-/// What the verb finds.
 struct Homogenized {
   std::optional<Problem> problem = {};
   BoundedStiffness stiffness = {};

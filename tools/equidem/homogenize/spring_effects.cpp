@@ -11,7 +11,6 @@
 namespace equidem {
 namespace {
 
-/// The springs of a contact.
 struct SpringKind {
   const char* name;
   const char* unit;  ///< in the names of columns

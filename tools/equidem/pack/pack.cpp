@@ -268,7 +268,6 @@ void write_assemblies(const CommonOptions& common, const PackCase& resolved, con
   }
 }
 
-/// A packing with its network.
 struct Packed {
   GrainPacking packing = {};
   Assembly network = {};

@@ -103,7 +103,6 @@ Results memory_results(RunJob& job) {
       .add("loop_bytes", "", each * static_cast<double>(job.simulation().motions().size()), "in all", {Shown::bytes});
 }
 
-/// The time step, the intervals that it does not allow, probes without interval, memory.
 Results step_results(RunJob& job, const RunPlan& plan) {
   Results out = job.step();
   if (!plan.probes.empty() && !plan.probe_interval) out.line("probes", "not recorded: [output] has no probe_interval");
@@ -430,7 +429,6 @@ void run_to_accuracy(RunVerb options, double accuracy) {
   }
 }
 
-/// Combinations of options that are not possible.
 void check_options(const RunVerb& options, bool collide) {
   if (options.resume && !options.out)
     bad_input("--resume without --out", "the checkpoint lies in that folder",

@@ -204,7 +204,6 @@ std::string checksum_of_schedules(const Scene& scene) {
   return sum.text();
 }
 
-/// In what order keys stand does not matter.
 void sort_keys(TomlValue& value) {
   std::ranges::stable_sort(value.entries, {}, [](const auto& entry) -> const std::string& { return entry.name; });
   for (auto& [name, entry] : value.entries) sort_keys(entry);
@@ -230,7 +229,6 @@ Simulation simulation_of(const Problem& problem, const Scene& scene, const Simul
   return casefile::with_place(problem.resolved.where("run"), [&] { return Simulation(scene, options); });
 }
 
-/// Forces of the contacts between discs.
 std::vector<ContactForce> forces_of(const Scene& scene, LoopKind::Motion motion,
                                     const std::vector<DiscMotion>& motions) {
   std::vector<ContactForce> forces;

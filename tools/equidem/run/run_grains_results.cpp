@@ -25,7 +25,6 @@ std::string range(double smallest, double largest) {
   return smallest == largest ? fmt::format("{:.6g}", smallest) : fmt::format("{:.6g} to {:.6g}", smallest, largest);
 }
 
-/// Number of bodies of each shape, in the order of GrainShape.
 std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
   std::array<std::int64_t, 3> counts{};
   for (const Grain& grain : resolved.scene.grains) ++counts[static_cast<std::size_t>(grain.shape())];
@@ -143,7 +142,6 @@ std::vector<std::string> lines_of_pairs(const GrainCase& resolved, const Contact
   return lines;
 }
 
-/// The contacts of the first stage, and of later ones where they change.
 void add_pairs(Results& out, const GrainCase& resolved) {
   std::vector<std::string> last = lines_of_pairs(resolved, resolved.contacts, resolved.scene);
   for (const std::string& line : last) out.line(&line == last.data() ? "contacts" : "", line);
@@ -170,7 +168,6 @@ void add_law(Results& out, const GrainCase& resolved) {
            "they press on one another energy comes and goes; for beds exact_flow or linear_dashpot");
 }
 
-/// Number of bonds, their integration over a step, the step limit.
 void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& step) {
   const bool later =
       std::ranges::any_of(resolved.stages, [](const StageCase& stage) { return stage.bonds.has_value(); });
@@ -288,8 +285,6 @@ Results shaking_results(const Shaking& shaking) {
   return out.set("peak_acceleration", shaking.peak_acceleration).set("direction", shaking.direction);
 }
 
-/// stages: a list with name, start, end, steps, ended_by, effects; removed, renamed, added, bonds_made, renamed_walls
-/// (from, to) where there are some; what it was to end by, and its shaking.
 Results stage_results(const GrainCase& resolved, const std::vector<StageReport>& stages, double step) {
   const bool any_changes = std::ranges::any_of(stages, [](const StageReport& s) { return !changes_of(s).empty(); });
   std::vector<Results> rows;
@@ -351,7 +346,6 @@ std::vector<Results> servo_rows(const GrainCase& resolved, const std::vector<Sta
   return rows;
 }
 
-/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error, and stage where there are some.
 Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
                       const std::vector<ServoReport>& present) {
   const char* force = resolved.body == Body::disc ? "N/m" : "N";
@@ -391,7 +385,6 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   return out;
 }
 
-/// cell/servos: a list with component, reached, wanted, stress, overshoot, mean_error, and stage where there are some.
 Results cell_servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
                            const std::vector<CellServoReport>& present) {
   std::vector<std::string> missed;
@@ -426,7 +419,6 @@ constexpr std::pair<BreakMode, PlotColour> modes_of_bonds[] = {{BreakMode::tensi
                                                                {BreakMode::bending, PlotColour::green}};
 }  // namespace
 
-/// Their number by mode, the first one, and the energy of their springs.
 Results GrainRun::breaks() const {
   Results out;
   if (!case_.scene.strengths) return out;

@@ -209,7 +209,6 @@ std::string suffix_of(const std::string& load_case) {
   return load_case.empty() ? "" : "_" + load_case;
 }
 
-/// The problem, and its load cases as far as they are solved.
 struct Solution {
   std::optional<Problem> problem = {};
   std::vector<SolvedCase> cases = {};

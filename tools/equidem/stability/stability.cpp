@@ -562,7 +562,6 @@ void draw_mode(const CommonOptions& options, const Problem& problem, const Stabi
                        .displacement_scale = visible * std::max(right.x - left.x, high.y - low.y)});
 }
 
-/// The problem that is judged, and the judgement.
 struct Judged {
   std::optional<Problem> problem = {};
   Stability stability = {};

@@ -167,7 +167,6 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> by_method(const St
   return methods;
 }
 
-/// Report and JSON of the verb.
 Results study_results(const StudyReport& report) {
   const Study& study = report.study;
   const StudyResult& result = report.result;
@@ -207,7 +206,6 @@ Results study_results(const StudyReport& report) {
   return out.set("advice", result.advice).set("notes", study.notes);
 }
 
-/// One row per setting: method, varied values, resolution, times, value, error and assured error.
 Table study_table(const StudyReport& report) {
   const auto& rows = report.result.rows;
   const std::string& quantity = report.study.quantity;
@@ -226,7 +224,6 @@ Table study_table(const StudyReport& report) {
   return table.add("refusal", rows, &StudyRow::refusal);
 }
 
-/// Error against time with the front.
 Plot study_plot(const StudyReport& report) {
   Plot plot{.title = with_symbols(report.study.title),
             .x = {.label = "time of computing, s", .logarithmic = true},
@@ -260,7 +257,6 @@ std::string study_plot_name(const Study& study) {
   return study.name + "_" + study.quantity;
 }
 
-/// The number that a study measures.
 double measured_number(const Delivery& result, const std::string& measure) {
   const auto number = number_in_json(result.results.json(), measure);
   if (!number)

@@ -80,7 +80,6 @@ class SweepRun {
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
   /// The points of this run that are done, then those of an earlier one beyond them.
   [[nodiscard]] std::vector<SweepPoint> points() const;
-  /// Write the table into --out, if there is one.
   void save() const;
 
  private:
@@ -361,7 +360,6 @@ std::string text_of_case(const Sweep& sweep) {
   return text;
 }
 
-/// Points of an earlier run of the same sweep.
 std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
   const auto& out = sweep.options.out;
   if (!sweep.options.resume) return {};
