@@ -390,16 +390,6 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
 
 namespace {
 
-/// Says whether the computation would be refused. \param memory_limit bytes; 0: what is available
-void add_memory_check(Results& results, const SolveEstimate& estimate, double memory_limit) {
-  try {
-    check_memory(estimate, memory_limit);
-    results.set("refusal", nullptr);
-  } catch (const Error& error) {
-    results.set("refusal", error.what()).line("", fmt::format("The computation would be refused: {}", error.what()));
-  }
-}
-
 /// \param resident bytes of the process before it solves
 /// \param drawing further bytes while the state is drawn, when the solver is there no longer
 /// \param memory_limit bytes; 0: what is available
@@ -414,7 +404,12 @@ Results estimate_results(const SolveEstimate& e, double resident, double drawing
     results.add("factor_bytes", "", e.factor_bytes, "of that for the factor", {Shown::bytes})
         .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   }
-  add_memory_check(results, e, memory_limit);
+  try {
+    check_memory(e, memory_limit);
+    results.set("refusal", nullptr);
+  } catch (const Error& error) {
+    results.set("refusal", error.what()).line("", fmt::format("The computation would be refused: {}", error.what()));
+  }
   if (e.factor_nonzeros > 0)
     results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize",
                              {.digits = 3});
@@ -509,13 +504,6 @@ std::optional<PrestressedSprings> choice_for(const Problem& problem) {
   });
 }
 
-/// Whether the forces at rest of the assembly, if it carries some, count.
-bool prestress_counts(const Problem& problem) {
-  if (!carries_forces(problem.assembly)) return false;
-  const auto choice = choice_for(problem);
-  return choice && choice->springs.prestressed();
-}
-
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where
 /// it is supported, with three where it is loaded, since fewer may roll.
 /// \param all those on measured sides too, whatever contacts they have
@@ -539,7 +527,9 @@ std::vector<std::uint8_t> held_by_the_case(const Problem& problem, bool all = fa
   for (const Support& support : problem.resolved.supports) hold(support.group, 2);
   for (const NamedLoads& loads : problem.resolved.load_cases)
     for (const Load& load : loads.loads) hold(load.group, 3);
-  if (prestress_counts(problem)) hold_loaded_at_rest(assembly, held);
+  if (!carries_forces(assembly)) return held;
+  if (const auto choice = choice_for(problem); choice && choice->springs.prestressed())
+    hold_loaded_at_rest(assembly, held);
   return held;
 }
 

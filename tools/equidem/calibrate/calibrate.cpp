@@ -173,23 +173,19 @@ std::int64_t number_of_samples(const Case& resolved) {
   return resolved.assembly.random() || scattered ? resolved.strength_target->samples : 1;
 }
 
-Assembly sample_assembly(Case resolved, std::uint64_t k) {
-  resolved.assembly.delaunay.seed += k;
-  if (resolved.assembly.packing) resolved.assembly.packing->seed += k;
-  return build_assembly(resolved);
-}
-
 std::vector<SeededSample> build_samples(const Problem& first) {
-  const Case& resolved = first.resolved;
+  Case resolved = first.resolved;
   StrengthTestOptions test = resolved.strength_target->test;
   test.rotation = resolved.rotation;
   test.solver = resolved.solver;
   const std::uint64_t seed = resolved.strength.value_or(StrengthOptions{}).seed;
   std::vector<SeededSample> samples;
   for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(number_of_samples(resolved)); ++k) {
-    Assembly assembly = k == 0 || !resolved.assembly.random() ? first.assembly : sample_assembly(first.resolved, k);
+    Assembly assembly = k == 0 || !resolved.assembly.random() ? first.assembly : build_assembly(resolved);
     ContactSprings springs = k == 0 ? first.springs.springs : build_springs(resolved, assembly).springs;
     samples.push_back({StrengthSample(std::move(assembly), std::move(springs), test), seed + k});
+    ++resolved.assembly.delaunay.seed;
+    if (resolved.assembly.packing) ++resolved.assembly.packing->seed;
   }
   return samples;
 }
@@ -216,13 +212,6 @@ std::string text_of_strengths(const Case& resolved, const StrengthCalibration& f
                   wanted.tensile, second, found.samples.size() > 1 ? "the means" : "those",
                   counted(std::ssize(found.samples), "sample"), to_string(resolved.strength_target->test.axis),
                   to_string(resolved.strength_target->test.ends)));
-}
-
-void check_alone(const Case& resolved) {
-  if (resolved.material)
-    bad_input_at(resolved.where("strength_target"), "[material] and [strength_target] are both given",
-                 "strengths are calibrated for springs that are known",
-                 "Calibrate the springs first, with --springs FILE, and take springs = \"FILE\" here");
 }
 
 /// The file of what is found: the one that is named, or NOUN.toml in --out, or none.
@@ -273,7 +262,10 @@ Results refusal_results(const Error& refusal) {
 /// With [strength_target]: wanted strengths -> strengths and friction of the contacts.
 /// \param file to which they are written; none: strength.toml in --out
 void calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
-  check_alone(read);
+  if (read.material)
+    bad_input_at(read.where("strength_target"), "[material] and [strength_target] are both given",
+                 "strengths are calibrated for springs that are known",
+                 "Calibrate the springs first, with --springs FILE, and take springs = \"FILE\" here");
   const FoundFile strengths_out(options, "strength", file);
   const auto problem_found = std::make_shared<std::optional<Problem>>();
   const std::vector<OutputPart> parts{case_part([=]() -> const Case& { return (*problem_found)->resolved; }),

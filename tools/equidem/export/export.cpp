@@ -159,14 +159,6 @@ Exported export_to(const ExportOptions& options, Engine engine,
   return std::move(made.exported);
 }
 
-Exported export_to_lammps(const ExportOptions& options) {
-  return export_to(options, Engine::lammps, lammps_files);
-}
-
-Exported export_to_yade(const ExportOptions& options) {
-  return export_to(options, Engine::yade, yade_files);
-}
-
 constexpr const char* stiffness_file = "stiffness.mtx";
 constexpr const char* loads_file = "right_hand_sides.mtx";
 constexpr const char* motions_file = "rigid_motions.mtx";
@@ -281,8 +273,10 @@ struct ExportFormat {
 };
 
 constexpr std::array export_formats{
-    ExportFormat{"lammps", "in.equidem and its data file", export_to_lammps},
-    ExportFormat{"yade", "run_equidem.py", export_to_yade},
+    ExportFormat{"lammps", "in.equidem and its data file",
+                 [](const ExportOptions& options) { return export_to(options, Engine::lammps, lammps_files); }},
+    ExportFormat{"yade", "run_equidem.py",
+                 [](const ExportOptions& options) { return export_to(options, Engine::yade, yade_files); }},
     ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx)", export_to_matrix_market},
 };
 

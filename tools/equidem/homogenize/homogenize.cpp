@@ -402,11 +402,6 @@ void add_bounds(Results& out, const BoundedStiffness& h, const std::optional<Rel
   if (!missing.parts().empty()) out.set("bounds_missing", missing);
 }
 
-void add_relation(Results& out, const RelationBeside& relation) {
-  const Matrix3 stiffness = isotropic_stiffness(relation.bulk_modulus_2d, relation.shear_modulus);
-  out.set("relation", Results().set("name", relation.name).append(moduli_results(effective_moduli(stiffness))));
-}
-
 void add_restrained(Results& out, const EffectiveStiffness& r) {
   const DisplacementOperator o = displacement_operator(r);
   out.block("\nrotation restrained: moments hold the discs, and the stress is not symmetric\n");
@@ -451,7 +446,10 @@ Results homogenized_results(const Problem& problem, Results out, bool periodic, 
   if (fabric) add_fabric(out, *fabric);
   add_bounds(out, h, relation);
   add_order(out, h, problem.springs.springs);
-  if (relation) add_relation(out, *relation);
+  if (relation) {
+    const Matrix3 stiffness = isotropic_stiffness(relation->bulk_modulus_2d, relation->shear_modulus);
+    out.set("relation", Results().set("name", relation->name).append(moduli_results(effective_moduli(stiffness))));
+  }
   if (r.effects.restrained && r.boundary != Boundary::traction) add_restrained(out, r);
   out.set("stress_asymmetry", r.stress_asymmetry);
   out.block("\n").line("unknowns").add("unknowns", "", r.unknowns, "", {Shown::count});
@@ -481,11 +479,6 @@ BoundsOptions bounds_options(const Case& resolved) {
   options.rotation = resolved.rotation;
   options.solver = resolved.solver;
   return options;
-}
-
-std::optional<RelationBeside> relation_of(const Problem& problem) {
-  if (!problem.springs.constants) return {};
-  return relation_beside(*problem.springs.constants, spring_relation(problem.resolved, problem.assembly));
 }
 
 /// \param failure set where the bounds are not finished
@@ -691,8 +684,11 @@ void homogenize(const HomogenizeVerb& options) {
   times.add(result.times);
   if (harmonic) times.add(harmonic->stiffness.times);
   if (found->sensitivities) times.add("sensitivities", seconds_of_sensitivities);
+  std::optional<RelationBeside> relation;
+  if (const auto& constants = problem.springs.constants)
+    relation = relation_beside(*constants, spring_relation(problem.resolved, problem.assembly));
   Results results = homogenized_results(problem, problem_results(problem, result.effects), problem.assembly.periodic(),
-                                        found->stiffness, fabric(problem.assembly), relation_of(problem));
+                                        found->stiffness, fabric(problem.assembly), relation);
   if (found->sensitivities) results.append(spring_effects(problem, result.stiffness, *found->sensitivities));
   results.set("strain_of_states", written_strain);
   if (options.accuracy)

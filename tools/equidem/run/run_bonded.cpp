@@ -345,13 +345,10 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
   return parts;
 }
 
-RelaxationOptions BondedRun::relaxation_options() const {
-  return {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest};
-}
-
 Results BondedRun::relax(StageTimes& times) {
   Stopwatch watch;
-  Relaxation rest = equidem::relax(scene_, relaxation_options());
+  Relaxation rest = equidem::relax(
+      scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
   times.add("relaxation", watch.lap());
   at_rest_ = std::move(rest.motions);
   Results out = scene()

@@ -116,7 +116,6 @@ class BondedRun final : public RunJob {
   /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
   /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
-  [[nodiscard]] RelaxationOptions relaxation_options() const;
   /// None without waves, and where the cell has no stiffness or is too large to be homogenized beside a run.
   [[nodiscard]] std::optional<WaveStiffness> stiffness_of_waves() const;
   [[nodiscard]] LargestDeformation deformation_at(const std::vector<DiscMotion>& motions) const;

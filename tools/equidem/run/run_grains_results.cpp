@@ -25,31 +25,19 @@ std::string range(double smallest, double largest) {
   return smallest == largest ? fmt::format("{:.6g}", smallest) : fmt::format("{:.6g} to {:.6g}", smallest, largest);
 }
 
-std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
-  std::array<std::int64_t, 3> counts{};
-  for (const Grain& grain : resolved.scene.grains) ++counts[static_cast<std::size_t>(grain.shape())];
-  return counts;
-}
-
-const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
-  using enum GrainOptions::EllipseLaw;
-  return law == exact
-             ? "ellipses meet at their closest points (exact)"
-             : "ellipses meet by the test of enlarged ellipses: shallow contacts are missed, and the normal is "
-               "that of the body with the lower number";
-}
-
 /// \param walls of all stages, one of each name
 void add_bodies(Results& out, const GrainCase& resolved, const std::vector<Wall>& walls) {
   double mass = 0, smallest = INFINITY, largest = 0;
   std::map<std::string, std::int64_t> groups;
+  std::array<std::int64_t, 3> counts{};  // in the order of GrainShape
   for (const Grain& grain : resolved.scene.grains) {
     mass += grain.inertia.mass;
     smallest = std::min(smallest, grain.radius);
     largest = std::max(largest, grain.radius);
     ++groups[resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]];
+    ++counts[static_cast<std::size_t>(grain.shape())];
   }
-  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  const auto [round, ellipses, clumps] = counts;
   out.set("body", to_string(resolved.body)).set("grains", resolved.scene.grains.size()).line("bodies");
   for (const auto& [count, name] :
        {std::pair{round, to_string(resolved.body)}, std::pair{ellipses, std::string("ellipse")},
@@ -69,7 +57,11 @@ void add_bodies(Results& out, const GrainCase& resolved, const std::vector<Wall>
                                              ? counted(std::ssize(most.discs), "disc")
                                              : fmt::format("{} to {} discs", fewest.discs.size(), most.discs.size())));
   }
-  if (ellipses > 0) out.line("", describe_ellipse_contact(resolved.options.ellipse_law));
+  if (ellipses > 0)
+    out.line("", resolved.options.ellipse_law == GrainOptions::EllipseLaw::exact
+                     ? "ellipses meet at their closest points (exact)"
+                     : "ellipses meet by the test of enlarged ellipses: shallow contacts are missed, and the normal is "
+                       "that of the body with the lower number");
   if (groups.size() > 1)
     out.line("groups",
              joined(groups, [](const auto& group) { return fmt::format("{} {}", group.first, group.second); }));

@@ -274,14 +274,10 @@ std::vector<double> solve_block(Case resolved) {
   return searched_values(*solve_case(problem, solver, problem.load_cases.front()).tension);
 }
 
-bool block_can_be_chosen(const Case& resolved) {
-  return resolved.test && resolved.assembly.arrangement != nullptr;
-}
-
 /// A tension test of a lattice misses the lattice without sides by about one over its rows. Finds the rows and columns,
 /// in the proportion of the case, for which nu, and the stiffness ratio (36) relative to itself, are within the
 /// accuracy. Sides of whole fours and one disc: gauges then sit alike in all.
-/// \param resolved read from `options`, one whose block can be chosen
+/// \param resolved a tension test of a lattice
 SearchedSetting searched_block(const Case& resolved, double accuracy) {
   const auto& [columns, rows] = std::tie(resolved.assembly.lattice.columns, resolved.assembly.lattice.rows);
   const double aspect = static_cast<double>(columns) / rows;
@@ -381,7 +377,7 @@ void solve(const CommonOptions& options, const std::optional<double>& accuracy) 
   expect_results(options, parts);
   const auto lock = lock_out(options);
   const auto build = [&](Case wanted) { solution->problem.emplace(prestressed(build_problem(std::move(wanted)))); };
-  const bool searched = accuracy && block_can_be_chosen(resolved);
+  const bool searched = accuracy && resolved.test && resolved.assembly.arrangement != nullptr;
   if (searched && !options.dry_run) {
     CaseSearch search(options, searched_block(resolved, *accuracy));
     do {

@@ -251,11 +251,6 @@ void dry_run_sweep(const Sweep& sweep, Results results) {
   deliver(sweep.options, "dry_run", results, first ? first->second.times : StageTimes{});
 }
 
-/// First line of the case that is written, which tells sweeps by different verbs apart.
-std::string heading_of(const Sweep& sweep) {
-  return fmt::format("# The case of a sweep by 'equidem {}'; what is varied stands at its end.\n", sweep.plan.verb);
-}
-
 std::vector<std::string> swept_verbs() {
   std::vector<std::string> names;
   for (const Verb& verb : verbs)
@@ -291,16 +286,13 @@ void refuse_misspelt_ratio(const SweptKey& key) {
                "Write --key ratio");
 }
 
-/// The key of a case that a swept one sets.
-std::string key_set_by(const SweepOptions& options, const SweptKey& key) {
-  return key.name == "ratio" ? "springs.kT" : key.name == SweepPlan::seed ? seed_key(options) : key.name;
-}
-
 /// Two keys that set the same one: the second would undo the first.
 void check_different(const SweepOptions& options, const SweepPlan& plan) {
-  std::map<std::string, std::string> setters;
+  std::map<std::string, std::string> setters;  // of keys of the case
   for (const SweptKey& key : plan.keys) {
-    const std::string set = key_set_by(options, key);
+    const std::string set = key.name == "ratio"           ? "springs.kT"
+                            : key.name == SweepPlan::seed ? seed_key(options)
+                                                          : key.name;
     const auto [other, is_new] = setters.emplace(set, key.name);
     if (is_new) continue;
     bad_input(fmt::format("{} and {} are varied", other->second == SweepPlan::seed ? "--seeds" : other->second,
@@ -347,8 +339,8 @@ std::string deciding_text(const Sweep& sweep) {
   for (const SweptKey& key : sweep.plan.keys)
     if (!key.numeric())
       std::ranges::transform(key.values, std::back_inserter(named), [&](const auto& v) { return folder / v; });
-  return heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.out) +
-         note_of_files(sweep.base.document, named);
+  return fmt::format("# The case of a sweep by 'equidem {}'; what is varied stands at its end.\n{}{}", sweep.plan.verb,
+                     to_toml(sweep.base.document, *sweep.options.out), note_of_files(sweep.base.document, named));
 }
 
 /// The case with what is varied as comments.
@@ -498,16 +490,15 @@ KeyOptions& current_key(SweepOptions& options) {
   return options.keys.empty() ? options.keys.emplace_back() : options.keys.back();
 }
 
-void name_key(SweepOptions& options, const std::string& name) {
-  const bool unnamed = options.keys.size() == 1 && options.keys.front().name.empty();
-  (unnamed ? options.keys.front() : options.keys.emplace_back()).name = name;
-}
-
 /// Options that may be repeated, those of each key after it.
 void add_key_options(CLI::App& command, const std::shared_ptr<SweepOptions>& options) {
+  const auto name_key = [options](const std::string& name) {
+    const bool unnamed = options->keys.size() == 1 && options->keys.front().name.empty();
+    (unnamed ? options->keys.front() : options->keys.emplace_back()).name = name;
+  };
   command
       .add_option_function<std::string>(
-          "--key", [options](const std::string& name) { name_key(*options, name); },
+          "--key", name_key,
           "a key to vary, such as springs.kT or assembly.rows; ratio: kT/kN.\nSeveral, each followed by its values: "
           "all "
           "combinations")
