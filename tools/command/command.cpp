@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <clocale>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -24,11 +25,16 @@
 
 namespace equidem {
 
-PointsInNumbers::PointsInNumbers() : numbers_(newlocale(LC_NUMERIC_MASK, "C", nullptr)), before_(uselocale(numbers_)) {}
-
-PointsInNumbers::~PointsInNumbers() {
-  uselocale(before_);
-  if (numbers_ != nullptr) freelocale(numbers_);
+void parse(CLI::App& app, std::vector<std::string> words) {
+  struct Points {  // of this thread: CLI11 reads numbers by strtold
+    locale_t numbers = newlocale(LC_NUMERIC_MASK, "C", nullptr), before = uselocale(numbers);
+    ~Points() {
+      uselocale(before);
+      if (numbers != nullptr) freelocale(numbers);
+    }
+  } const points;
+  std::ranges::reverse(words);
+  app.parse(words);
 }
 
 OptionCheck whole_number(std::int64_t least, std::int64_t most) {

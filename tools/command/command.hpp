@@ -4,7 +4,6 @@
 /// Checks of the values of options, for CLI::Option::check.
 #pragma once
 
-#include <clocale>
 #include <complex>
 #include <cstdint>
 #include <filesystem>
@@ -32,18 +31,9 @@ class App;
 
 namespace equidem {
 
-/// While it lives, numbers of options have a decimal point in this thread, whatever locale the process is in: CLI11
-/// reads them by strtold.
-class PointsInNumbers {
- public:
-  PointsInNumbers();
-  ~PointsInNumbers();
-  PointsInNumbers(const PointsInNumbers&) = delete;
-  PointsInNumbers& operator=(const PointsInNumbers&) = delete;
-
- private:
-  locale_t numbers_, before_;
-};
+/// Parses the words of a command line, whose numbers have a decimal point whatever locale the process is in.
+/// \throws CLI::ParseError
+void parse(CLI::App& app, std::vector<std::string> words);
 
 /// The number that the value of an option is; none where it is none.
 template <class Number>

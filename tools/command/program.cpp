@@ -162,8 +162,7 @@ void run(const Program& program, const std::vector<std::string>& arguments) {
   }
 
   try {
-    const PointsInNumbers points;
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    parse(app, arguments);
   } catch (const CLI::CallForHelp&) {
     const bool of_verb = verb != commands.end() && (*verb)->parsed();
     return print(of_verb ? (*verb)->help(program.name) : app.help());
