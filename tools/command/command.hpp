@@ -226,9 +226,10 @@ class SavedOnTheWay {
 };
 
 /// \param done "3 of 12 points are done"
-/// \param again how to continue a run with --out, "Run the same command with --resume to do the rest"
+/// \param again how to continue a run with --out
 /// \throws Error (interrupted)
-[[noreturn]] void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again);
+[[noreturn]] void throw_stopped(const CommonOptions& options, const std::string& done,
+                                const std::string& again = "Run the same command with --resume to do the rest");
 
 /// "optimized, assertions off".
 std::string build_description();

@@ -225,9 +225,8 @@ Problem problem_of(Case resolved, Purpose purpose) {
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
   stop_if_interrupted();
-  std::string wide_region = warning_of_wide_region(assembly);
   Problem problem{std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
-  problem.wide_region = std::move(wide_region);
+  problem.wide_region = warning_of_wide_region(problem.assembly);
   return problem;
 }
 

@@ -59,13 +59,10 @@ struct CaseModel {
   std::vector<std::string> notes = {};
 };
 
-/// Refuses what the engine does not carry, then chooses the step: a motion that grows has none.
-template <typename Step>
-void finish(EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where,
-            const Step& step) {
+/// Refuses what the engine does not carry, before a step is chosen: a motion that grows has none.
+void check_carried(const EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where) {
   casefile::with_place(where, [&] { require_carried(model.found, engine, options.accept); });
   stop_if_interrupted();
-  model.time_step = step();
 }
 
 /// The scene of a case without [run]: its supports and loads, there from the start.
@@ -108,12 +105,11 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   if (model.to_rest) model.found.erase(EngineFeature::given_at_start);
   if (model.to_rest && model.local_damping == 0) model.local_damping = settings.damping.local = damping_to_rest;
   if (run) model.duration = run->duration.value_or(0);
-  finish(model, engine, options, resolved.document.where(), [&] {
-    TimeStepOptions wanted = run ? run->time_step : TimeStepOptions{};
-    if (run) wanted.duration = run->duration.value_or(0);
-    const double step = choose_time_step(scene, settings, wanted).step;
-    return run && run->duration ? std::min(step, *run->duration) : step;
-  });
+  check_carried(model, engine, options, resolved.document.where());
+  TimeStepOptions wanted = run ? run->time_step : TimeStepOptions{};
+  wanted.duration = model.duration;
+  model.time_step = choose_time_step(scene, settings, wanted).step;
+  if (run && run->duration) model.time_step = std::min(model.time_step, *run->duration);
   made.notes = problem->left_out.sentences;
   if (carries_forces(problem->assembly)) made.notes.emplace_back("the exported contacts start without forces at rest");
   if (!disc_density(resolved, problem->assembly))
@@ -133,7 +129,8 @@ CaseModel grain_model(const ExportOptions& options, Engine engine) {
                  {{}, {case_part([resolved]() -> const TomlValue& { return resolved->document; })}}};
   made.model.title = resolved->title;
   made.model.duration = resolved->duration;
-  finish(made.model, engine, options, resolved->document.where(), [&] { return step; });
+  made.model.time_step = step;
+  check_carried(made.model, engine, options, resolved->document.where());
   return made;
 }
 

@@ -641,9 +641,7 @@ void homogenize_ensemble(const CommonOptions& options, const Case& resolved, boo
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted)).warn();
   result.save_samples = [&] { save(result.samples); };
   result.failure = failure_of([&] {
-    if (sampled.stopped)
-      throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
-                    "Run the same command with --resume to do the rest");
+    if (sampled.stopped) throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted));
     if (std::ranges::all_of(result.samples, &EnsembleSample::refused))
       computation_failed("none of the cells has moduli",
                          "the first: " + without_full_stop(result.samples.front().refusal), "");

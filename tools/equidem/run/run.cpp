@@ -380,8 +380,7 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
                   {.folder = tables.path(), .overwrite = options.overwrite, .resume = options.resume}, *shared_result);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::interrupted) throw;
-      throw_stopped(options, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
-                    "Run the same command with --resume to do the rest");
+      throw_stopped(options, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps));
     }
   });
   if (failure && failure->kind() == ErrorKind::bad_input && result.steps_done == 0) throw *failure;

@@ -477,8 +477,7 @@ void sweep(const SweepOptions& options) {
                         : "done",
           std::move(results), std::move(times), parts);
   if (run.stopped()) {
-    throw_stopped(options, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()),
-                  "Run the same command with --resume to do the rest");
+    throw_stopped(options, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()));
   }
   if (all_failed)
     computation_failed("none of the points could be computed",
