@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "manual.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -16,6 +14,7 @@
 #include "equidem/output/results.hpp"
 
 #include "command_texts.hpp"
+#include "program.hpp"
 
 namespace equidem {
 namespace {

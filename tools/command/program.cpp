@@ -23,7 +23,6 @@
 #include "equidem/output/results.hpp"
 
 #include "command.hpp"
-#include "manual.hpp"
 
 namespace equidem {
 namespace {

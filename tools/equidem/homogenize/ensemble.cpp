@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "homogenize/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
@@ -17,14 +16,12 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_accuracy.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
-#include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "accuracy.hpp"
-#include "problem.hpp"
+#include "homogenize/homogenize.hpp"
 #include "verbs.hpp"
 
 namespace equidem {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -20,12 +19,9 @@
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
-#include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "accuracy.hpp"
-#include "homogenize/ensemble.hpp"
-#include "homogenize/spring_effects.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 
@@ -557,15 +553,10 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
   }
   if (sensitivities) {
     const auto write = [=](const CommonOptions& into) {
-      if (!found->sensitivities) return;
-      const Matrix3& stiffness = found->stiffness.result.stiffness;
-      if (!into.pictures_only)
-        write_csv(*into.out / sensitivities_name, sensitivity_table(*found->problem, stiffness, *found->sensitivities),
-                  true);
-      draw_sensitivities(into, *found->problem, stiffness, *found->sensitivities);
+      if (found->sensitivities)
+        write_sensitivities(into, *found->problem, found->stiffness.result.stiffness, *found->sensitivities);
     };
-    parts.push_back({sensitivities_name, write, OutputPart::page, sensitivity_pictures(resolved.output)});
-    parts.back().files.insert(parts.back().files.begin(), sensitivities_name);
+    parts.push_back({sensitivities_name, write, OutputPart::page, files_of_sensitivities(resolved.output)});
   }
   parts.push_back(assembly_part(resolved.output, [=]() -> const Assembly& { return found->problem->assembly; }));
   const auto write_all = [=](const CommonOptions& into) {

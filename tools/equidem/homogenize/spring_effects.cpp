@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "homogenize/spring_effects.hpp"
-
 #include <array>
 #include <cstdint>
 
 #include "equidem/core/text.hpp"
 
+#include "homogenize/homogenize.hpp"
 #include "state_files.hpp"
 
 namespace equidem {
@@ -78,6 +77,8 @@ Results spring_effects(const Problem& problem, const Matrix3& stiffness, const S
   return out.set("sensitivities", of_kinds);
 }
 
+namespace {
+
 Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {
   const std::vector<Contact>& contacts = problem.assembly.contacts;
   const ContactSprings& springs = problem.springs.springs;
@@ -103,8 +104,6 @@ Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const 
   return table;
 }
 
-namespace {
-
 /// A picture: the change of a modulus by all springs of a contact, of E and G relative.
 struct EffectPicture {
   const char* suffix;
@@ -124,15 +123,17 @@ constexpr std::array effect_pictures{
 
 }  // namespace
 
-std::vector<std::string> sensitivity_pictures(const OutputCase& wanted) {
-  std::vector<std::string> names;
+std::vector<std::string> files_of_sensitivities(const OutputCase& wanted) {
+  std::vector<std::string> names{sensitivities_name};
   for (const EffectPicture& picture : effect_pictures)
     for (const std::string& name : state_names(pictures_of(wanted), picture.suffix)) names.push_back(name);
   return names;
 }
 
-void draw_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
-                        const SpringSensitivities& found) {
+void write_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
+                         const SpringSensitivities& found) {
+  if (!options.pictures_only)
+    write_csv(*options.out / sensitivities_name, sensitivity_table(problem, stiffness, found), true);
   const ContactSprings& springs = problem.springs.springs;
   const EffectiveModuli moduli = effective_moduli(stiffness);
   for (const EffectPicture& picture : effect_pictures) {
