@@ -168,6 +168,37 @@ std::string warning_of_wide_region(const Assembly& assembly) {
       loose.size() == 1 ? "it" : "them");
 }
 
+AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
+  AssemblySummary summary{.kind = a.kind,
+                          .discs = std::ssize(a.centres),
+                          .contacts = std::ssize(a.contacts),
+                          .area = {},
+                          .solid_fraction = 0,
+                          .mean_radius = a.mean_radius(),
+                          .stiffest = springs.largest(),
+                          .gaps = gaps_at_contacts(a),
+                          .periodic = a.periodic(),
+                          .contacts_found = a.gap_tolerance.has_value()};
+  if (!a.periodic() && a.cell_areas.empty()) return summary;
+  summary.area = a.area();
+  summary.solid_fraction = a.solid_fraction();
+  return summary;
+}
+
+/// Tells what was decided on forces at rest, or that the verb takes none.
+void add_prestress_decision(Results& results, const Problem& problem) {
+  if (!problem.prestress) {
+    if (carries_forces(problem.assembly))
+      results.line("not used",
+                   "forces at rest: solve, homogenize, stability, and quasistatic with frictional contacts, take them");
+    return;
+  }
+  results.line("forces at rest", problem.prestress->sentence);
+  results.set("prestress/counts", problem.prestress->springs.prestressed())
+      .set("prestress/largest", problem.prestress->largest)
+      .set("prestress/imbalance", problem.prestress->balance.relative);
+}
+
 std::atomic<SharedAssemblies*> shared_assemblies{nullptr};
 
 }  // namespace
@@ -254,17 +285,6 @@ void add_actions(Problem& problem) {
   }
 }
 
-Problem build_problem(Case resolved) {
-  if (!acts(resolved)) {
-    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
-                 "Add [test], or [[support]] and [[load]]");
-  }
-  Problem problem = problem_of(std::move(resolved));
-  leave_out_loose(problem);
-  add_actions(problem);
-  return problem;
-}
-
 LargestDeformation largest_deformation(const Assembly& assembly, const ContactSprings& springs,
                                        std::span<const ContactForce> forces) {
   LargestDeformation largest;
@@ -310,23 +330,6 @@ void add_largest_void(Results& results, const Assembly& assembly) {
 
 const char* status_of(std::optional<std::int64_t> unstable_modes) {
   return !unstable_modes ? "unjudged" : *unstable_modes > 0 ? "unstable" : "solved";
-}
-
-AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
-  AssemblySummary summary{.kind = a.kind,
-                          .discs = std::ssize(a.centres),
-                          .contacts = std::ssize(a.contacts),
-                          .area = {},
-                          .solid_fraction = 0,
-                          .mean_radius = a.mean_radius(),
-                          .stiffest = springs.largest(),
-                          .gaps = gaps_at_contacts(a),
-                          .periodic = a.periodic(),
-                          .contacts_found = a.gap_tolerance.has_value()};
-  if (!a.periodic() && a.cell_areas.empty()) return summary;
-  summary.area = a.area();
-  summary.solid_fraction = a.solid_fraction();
-  return summary;
 }
 
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys) {
@@ -379,7 +382,7 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
   results.line("springs", problem.springs.report);
   if (problem.resolved.viscoelastic)
     results.line("viscoelastic", describe(build_viscoelasticity(problem.resolved, problem.springs.constants)));
-  add_forces_at_rest(results, problem);
+  add_prestress_decision(results, problem);
   question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);
@@ -544,8 +547,9 @@ bool loses_its_loads(const Problem& problem, const LoadBearingNetwork& network) 
          std::ranges::none_of(network.part->discs, [&](std::int32_t disc) { return loaded.contains(disc); });
 }
 
-}  // namespace
-
+/// Leaves out of a packing, or of an assembly from a file, the bodies that no contact holds in place (LeaveOut::loose)
+/// and that have no support or load of their own; on a side of the assembly they are left out even so. The cells and
+/// sides of the rest are measured again. Bodies and contacts are then numbered anew.
 void leave_out_loose(Problem& problem) {
   const AssemblyKind kind = problem.resolved.assembly.kind;
   if (kind != AssemblyKind::packing && kind != AssemblyKind::file) return;
@@ -581,6 +585,19 @@ void leave_out_loose(Problem& problem) {
   assembly = std::move(rest);
 }
 
+}  // namespace
+
+Problem build_problem(Case resolved) {
+  if (!acts(resolved)) {
+    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
+                 "Add [test], or [[support]] and [[load]]");
+  }
+  Problem problem = problem_of(std::move(resolved));
+  leave_out_loose(problem);
+  add_actions(problem);
+  return problem;
+}
+
 std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
                                           std::vector<ContactForce> changes) {
   for (std::size_t c = 0; springs.prestressed() && c < changes.size(); ++c) {
@@ -595,19 +612,6 @@ Problem prestressed(Problem problem) {
   problem.prestress = choice_for(problem);
   if (problem.prestress) problem.springs.springs = problem.prestress->springs;
   return problem;
-}
-
-void add_forces_at_rest(Results& results, const Problem& problem) {
-  if (!problem.prestress) {
-    if (carries_forces(problem.assembly))
-      results.line("not used",
-                   "forces at rest: solve, homogenize, stability, and quasistatic with frictional contacts, take them");
-    return;
-  }
-  results.line("forces at rest", problem.prestress->sentence);
-  results.set("prestress/counts", problem.prestress->springs.prestressed())
-      .set("prestress/largest", problem.prestress->largest)
-      .set("prestress/imbalance", problem.prestress->balance.relative);
 }
 
 }  // namespace equidem

@@ -153,7 +153,6 @@ struct AssemblySummary {
   bool periodic = false;
   bool contacts_found = false;  ///< by a tolerance
 };
-AssemblySummary summary_of(const Assembly& assembly, const ContactSprings& springs);
 /// Gives the results from a summary. \param of_whole lines that need the whole assembly, after those of its area
 Results problem_results(const Problem& problem, const AssemblySummary& summary, const Results& of_whole,
                         const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
@@ -181,12 +180,6 @@ inline constexpr const char* no_solid = "no isotropic solid has these moduli: K 
 /// \param of_solid null in plane strain where no solid has these moduli
 Results moduli_results(const EffectiveModuli& moduli, const std::string& name = "moduli", bool of_solid = false);
 
-/// Leave out of a packing, or of an assembly from a file, the bodies that no contact holds in place (LeaveOut::loose)
-/// and that have no support or load of their own; on a side of the assembly they are left out even so. The cells and
-/// sides of the rest are measured again. Bodies and contacts are then numbered anew.
-/// \param problem its assembly, springs and left_out are changed
-void leave_out_loose(Problem& problem);
-
 /// The problem with the decision whether the forces at rest count, as the case asks; where they do, its springs have
 /// their geometric stiffness.
 /// \throws Error (bad_input) as choose_prestress
@@ -195,8 +188,5 @@ Problem prestressed(Problem problem);
 /// Forces of the contacts with those at rest, where these count. \param changes by the loads
 std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
                                           std::vector<ContactForce> changes);
-
-/// Tells what was decided, or that the verb takes no such forces.
-void add_forces_at_rest(Results& results, const Problem& problem);
 
 }  // namespace equidem
