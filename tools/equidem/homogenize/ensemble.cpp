@@ -285,8 +285,8 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n",
                               symbol, percent(*result.accuracy));
   }
-  const auto smallest = std::find_if(statistics.sizes.begin(), statistics.sizes.end(),
-                                     [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
+  const auto smallest = std::ranges::find_if(
+      statistics.sizes, [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
   const auto discs = [&](std::int64_t needed) {
     return fmt::format("{} discs{}", needed, static_cast<double>(needed) < smallest->mean_discs + 1 ? " at most" : "");
   };

@@ -42,8 +42,7 @@ std::string name_of(const ZonePoint& wave, const std::vector<ZonePoint>& equival
   if (wave.name.empty()) return fmt::format("q = ({:.6g}, {:.6g}) rad/m", wave.q.x, wave.q.y);
   if (wave.name == long_waves_name)
     return fmt::format("long waves, q -> 0 along ({:.4g}, {:.4g})", wave.q.x / norm(wave.q), wave.q.y / norm(wave.q));
-  const auto alike =
-      std::count_if(equivalent.begin(), equivalent.end(), [&](const ZonePoint& p) { return p.name == wave.name; });
+  const auto alike = std::ranges::count(equivalent, wave.name, &ZonePoint::name);
   const std::string place = fmt::format("({:.6g}, {:.6g}) rad/m", wave.q.x, wave.q.y);
   return alike > 1 ? fmt::format("the {} points {}, such as {}", alike, wave.name, place)
                    : fmt::format("the point {}, {}", wave.name, place);

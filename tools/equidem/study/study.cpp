@@ -154,13 +154,13 @@ std::string legend_of(const StudyReport& report, const std::string& method) {
 }
 
 /// The rows that were timed, method by method in the order of the study.
-std::vector<std::pair<std::string, std::vector<std::size_t>>> by_method(const StudyReport& report) {
-  std::vector<std::pair<std::string, std::vector<std::size_t>>> methods;
+using MethodRows = std::pair<std::string, std::vector<std::size_t>>;
+std::vector<MethodRows> by_method(const StudyReport& report) {
+  std::vector<MethodRows> methods;
   for (std::size_t k = 0; k < report.result.rows.size(); ++k) {
     const StudyRow& row = report.result.rows[k];
     if (row.time.repetitions == 0) continue;
-    auto at =
-        std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.first == row.setting.method; });
+    auto at = std::ranges::find(methods, row.setting.method, &MethodRows::first);
     if (at == methods.end()) at = methods.insert(at, {row.setting.method, {}});
     at->second.push_back(k);
   }
