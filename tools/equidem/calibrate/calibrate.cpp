@@ -103,7 +103,7 @@ void add_mean(Results& out, const std::string& key, const std::string& name, con
       : out.set(place + "_deviation", nullptr);
   const double off = mean.mean / wanted - 1;
   std::abs(off) > quotient_rounding ? out.add(place + "_off", "off by", off, "", {Shown::percent})
-                           : out.note(", as wanted").set(place + "_off", off);
+                                    : out.note(", as wanted").set(place + "_off", off);
 }
 
 void add_reached_strengths(Results& out, const StrengthTargets& wanted, const StrengthCalibration& found) {
@@ -557,14 +557,6 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   return out;
 }
 
-Results feasible_results(const Problem& problem, const Calibration& range) {
-  const Case& resolved = problem.resolved;
-  Results out = problem_results(problem, problem.effects(), AssemblyKeys::size);
-  add_wanted(out, resolved.material->moduli);
-  add_range(out, range, resolved.material->moduli.plane);
-  return out;
-}
-
 struct CalibrateVerb : CommonOptions {
   std::optional<std::filesystem::path> springs;   ///< path of the springs file
   std::optional<std::filesystem::path> strength;  ///< path of the strength file
@@ -661,8 +653,10 @@ void calibrate(const CalibrateVerb& options) {
     }
   }();
   if (refusal) {
-    deliver(options, "not_feasible", feasible_results(problem, found).append(refusal_results(*refusal)), problem.times,
-            parts);
+    Results results = problem_results(problem, problem.effects(), AssemblyKeys::size);
+    add_wanted(results, wanted);
+    add_range(results, found, wanted.plane);
+    deliver(options, "not_feasible", results.append(refusal_results(*refusal)), problem.times, parts);
     throw *refusal;
   }
   const bool converged = !failure;

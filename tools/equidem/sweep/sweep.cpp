@@ -446,11 +446,10 @@ void sweep(const SweepOptions& options) {
   const auto draw = [&](const CommonOptions& into) {
     if (!computed->stopped()) write_curves(*into.out, sweep.plan, points, options.title.value_or(sweep.base.title));
   };
-  const std::vector<OutputPart> parts{{Sweep::table_name,
-                                       [&](const CommonOptions& /*into*/) { computed->save(); },
-                                       OutputPart::folder,
-                                       {Sweep::table_name, Sweep::case_name}},
-                                      {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
+  const auto save = [&](const CommonOptions& /*into*/) { computed->save(); };
+  const std::vector<OutputPart> parts{
+      {Sweep::table_name, save, OutputPart::folder, {Sweep::table_name, Sweep::case_name}},
+      {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
   expect_results(options, parts, options.resume);
   if (options.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
   const auto lock = lock_out(options);
