@@ -56,9 +56,9 @@ std::vector<std::string> state_names(const OutputCase& wanted, const std::string
   return names;
 }
 
-void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix) {
+void remove_files(const CommonOptions& options, const std::vector<std::string>& names) {
   std::error_code ignored;
-  for (const std::string& name : state_names(wanted, suffix)) std::filesystem::remove(*options.out / name, ignored);
+  for (const std::string& name : names) std::filesystem::remove(*options.out / name, ignored);
 }
 
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,

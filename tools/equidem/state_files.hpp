@@ -57,8 +57,8 @@ inline OutputCase pictures_of(OutputCase wanted) {
 
 /// The names of the files of a state and of its picture.
 std::vector<std::string> state_names(const OutputCase& wanted, const std::string& suffix);
-/// Removes these files of an earlier computation, where the present one has no state to write over them.
-void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix);
+/// Removes files of an earlier computation, where the present one has none to write over them.
+void remove_files(const CommonOptions& options, const std::vector<std::string>& names);
 
 /// Tables and files for ParaView that [output] asks for.
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,

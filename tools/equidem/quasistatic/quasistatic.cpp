@@ -424,33 +424,20 @@ bool keeps_state(const Case& resolved) {
   return is_frictional(resolved) || resolved.quasistatic.frame_every != 0;
 }
 
+std::string checkpoint_text(const CommonOptions& options, const Sequence& sequence) {
+  return to_toml(deciding_tables(sequence.problem.resolved.document, Decided::path), *options.out);
+}
+
 /// The path so far, written whole or not at all.
-class PathCheckpoint {
- public:
-  PathCheckpoint(const CommonOptions& options, const Sequence& sequence)
-      : path_(*options.out / path_checkpoint_name),
-        case_text_(to_toml(deciding_tables(sequence.problem.resolved.document, Decided::path), *options.out)) {}
-
-  void write(const Sequence& sequence, EventFrames* frames) const {
-    Checkpoint checkpoint;
-    checkpoint.state.step = std::ssize(sequence.run().events());
-    PathNumbers numbers;
-    if (sequence.unbonded) sequence.unbonded->pass(numbers);
-    checkpoint.state.arrays.push_back({.name = "path", .columns = 1, .values = numbers.numbers()});
-    if (frames != nullptr) checkpoint.files.push_back(frames->kept());
-    CheckpointWriter(path_, case_text_, true).write(checkpoint);
-  }
-  /// \return none where no state was kept
-  [[nodiscard]] std::optional<Checkpoint> read() const {
-    if (!std::filesystem::exists(path_)) return {};
-    return read_checkpoint(path_, case_text_);
-  }
-  void remove() const { std::filesystem::remove(path_); }
-
- private:
-  std::filesystem::path path_;
-  std::string case_text_;
-};
+void write_path_checkpoint(const CommonOptions& options, const Sequence& sequence, std::optional<EventFrames>& frames) {
+  Checkpoint checkpoint;
+  checkpoint.state.step = std::ssize(sequence.run().events());
+  PathNumbers numbers;
+  if (sequence.unbonded) sequence.unbonded->pass(numbers);
+  checkpoint.state.arrays.push_back({.name = "path", .columns = 1, .values = numbers.numbers()});
+  if (frames) checkpoint.files.push_back(frames->kept());
+  CheckpointWriter(*options.out / path_checkpoint_name, checkpoint_text(options, sequence), true).write(checkpoint);
+}
 
 /// Goes on with an earlier computation of the same case.
 /// \param note of the files that the case reads
@@ -466,7 +453,9 @@ std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence,
   const std::int64_t found = std::ssize(stored.events);
   check_most_events(before, sequence.problem.resolved, found);
   std::optional<Checkpoint> kept;
-  if (keeps_state(sequence.problem.resolved)) kept = PathCheckpoint(options, sequence).read();
+  if (const auto path = *options.out / path_checkpoint_name;
+      keeps_state(sequence.problem.resolved) && std::filesystem::exists(path))
+    kept = read_checkpoint(path, checkpoint_text(options, sequence));
   if (kept) {
     if (sequence.unbonded) {
       PathNumbers numbers(kept->state["path"]);
@@ -508,12 +497,11 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   std::optional<EventFrames> frames;
   if (options.out && wanted.frame_every > 0) frames.emplace(options, sequence.scene(), wanted.frame_every, from, run);
-  std::optional<PathCheckpoint> checkpoint;
-  if (options.out && keeps_state(sequence.problem.resolved)) checkpoint.emplace(options, sequence);
   bool between = true;  // two calls of advance()
   const auto save = [&] {
     if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
-    if (checkpoint && between) checkpoint->write(sequence, frames ? &*frames : nullptr);
+    if (options.out && between && keeps_state(sequence.problem.resolved))
+      write_path_checkpoint(options, sequence, frames);
   };
   SavedOnTheWay saved_on_the_way(options);
   const Stopwatch watch;
@@ -603,7 +591,7 @@ void quasistatic(QuasistaticOptions options) {
   if (options.resume) {
     frames = resume(options, sequence, path->note);
   } else if (options.out && keeps_state(resolved)) {
-    PathCheckpoint(options, sequence).remove();
+    std::filesystem::remove(*options.out / path_checkpoint_name);
   }
   write_case(options, sequence.problem.resolved, path->note);
   const Stop& stop = path->stop = go(options, sequence, frames);

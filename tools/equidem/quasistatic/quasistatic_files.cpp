@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <system_error>
 #include <utility>
 
 #include "equidem/breakage/avalanches.hpp"
@@ -216,11 +215,7 @@ OutputCase of_end(OutputCase wanted) {
 void write_curve(const CommonOptions& options, const BreakageScene& scene, const EventPath& run,
                  const std::string& title) {
   const LoadCurve curve = curve_of(run);
-  if (curve.load.empty()) {
-    std::error_code ignored;  // that of an earlier path in the same folder
-    for (const std::string& name : plot_files("curve")) std::filesystem::remove(*options.out / name, ignored);
-    return;
-  }
+  if (curve.load.empty()) return remove_files(options, plot_files("curve"));
   const DrivenBy driven_by = scene.path.driven_by;
   const bool strain = driven_by == DrivenBy::strain;
   const Plot plot{
@@ -264,7 +259,7 @@ void write_figures(const CommonOptions& options, const OutputCase& wanted, const
 
 void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,
                      const std::optional<PathState>& end) {
-  if (!end) return remove_state(options, of_end(wanted), "");
+  if (!end) return remove_files(options, names_of_end_state(wanted));
   const Assembly& assembly = scene.assembly;
   std::vector<DiscMotion> motions = end->motions;
   if (const std::optional<Tensor2>& gradient = scene.path.pattern.gradient) {
