@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -299,13 +298,8 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
   };
   const OutputCase& output = problem_.resolved.output;
   std::vector<OutputPart> parts{case_part([this]() -> const Case& { return problem_.resolved; })};
-  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write,
-                        std::vector<std::string> files = {}) {
-    parts.push_back({name, std::move(write), OutputPart::page, std::move(files)});
-  };
-  const auto state_part = [&](const char* name,
-                              const std::function<void(const CommonOptions&, const AssemblyState&)>& write,
-                              std::vector<std::string> files) {
+  const auto state_part = [&](bool wanted, const char* name, std::vector<std::string> files, const auto& write) {
+    if (!wanted) return;
     const auto write_state = [this, write](const CommonOptions& into) {
       if (goes_to_rest() && at_rest_.empty()) return;
       const std::vector<DiscMotion> motions = goes_to_rest() ? at_rest_ : simulation_.motions();
@@ -313,35 +307,28 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
       if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
       write(into, {.assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}});
     };
-    part(name, write_state, std::move(files));
+    parts.push_back({name, write_state, OutputPart::page, std::move(files)});
   };
-  if (output.csv) {
-    const auto write = [](const CommonOptions& into, const AssemblyState& state) {
-      write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
-    };
-    state_part("discs.csv", write, {"discs.csv"});
-  }
-  if (output.vtk) {
-    const auto write = [](const CommonOptions& into, const AssemblyState& state) {
-      write_vtk(*into.out, "state", state, into.overwrite);
-    };
-    state_part("the state for ParaView", write, {});
-  }
-  if (output.picture) {
-    const auto draw = [this](const CommonOptions& into, const AssemblyState& state) {
-      const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
-      write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
-    };
-    state_part("the picture", draw, {"picture.svg"});
-  }
-  if (goes_to_rest()) return parts;
-  part("the plot of energies", [this, &result](const CommonOptions& into) {
-    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
+  state_part(output.csv, "discs.csv", {"discs.csv"}, [](const CommonOptions& into, const AssemblyState& state) {
+    write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
   });
-  if (output.picture)
-    part("the film", [this, &result](const CommonOptions& /*into*/) {
-      add_film(problem_.resolved.title, problem_.assembly, result.record.film);
-    });
+  state_part(output.vtk, "the state for ParaView", {}, [](const CommonOptions& into, const AssemblyState& state) {
+    write_vtk(*into.out, "state", state, into.overwrite);
+  });
+  const auto draw = [this](const CommonOptions& into, const AssemblyState& state) {
+    const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
+    write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
+  };
+  state_part(output.picture, "the picture", {"picture.svg"}, draw);
+  if (goes_to_rest()) return parts;
+  const auto draw_energies = [this, &result](const CommonOptions& into) {
+    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
+  };
+  parts.push_back({"the plot of energies", draw_energies, OutputPart::page});
+  const auto draw_film = [this, &result](const CommonOptions& /*into*/) {
+    add_film(problem_.resolved.title, problem_.assembly, result.record.film);
+  };
+  if (output.picture) parts.push_back({"the film", draw_film, OutputPart::page});
   return parts;
 }
 
