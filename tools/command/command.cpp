@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <clocale>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -11,7 +12,6 @@
 #include <iterator>
 #include <new>
 #include <span>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -19,20 +19,22 @@
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
-#include "equidem/core/error.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/page/page.hpp"
 #include "equidem/output/quantities.hpp"
 
 namespace equidem {
 
-PointsInNumbers::PointsInNumbers() : numbers_(newlocale(LC_NUMERIC_MASK, "C", nullptr)), before_(uselocale(numbers_)) {}
-
-PointsInNumbers::~PointsInNumbers() {
-  uselocale(before_);
-  if (numbers_ != nullptr) freelocale(numbers_);
+void parse(CLI::App& app, std::vector<std::string> words) {
+  struct Points {  // of this thread: CLI11 reads numbers by strtold
+    locale_t numbers = newlocale(LC_NUMERIC_MASK, "C", nullptr), before = uselocale(numbers);
+    ~Points() {
+      uselocale(before);
+      if (numbers != nullptr) freelocale(numbers);
+    }
+  } const points;
+  std::ranges::reverse(words);
+  app.parse(words);
 }
 
 OptionCheck whole_number(std::int64_t least, std::int64_t most) {
@@ -152,7 +154,6 @@ void prepare(const CommonOptions& options) {
   set_progress_shown(!options.quiet);
 }
 
-/// The key that --seed sets: a packing has a seed of its own.
 const char* seed_key(const CommonOptions& options) {
   const TomlValue root = casefile::read_document(options.case_file, options.set);
   const TomlValue* assembly = root.find("assembly");
@@ -181,15 +182,15 @@ static void check_named(const std::filesystem::path& path, bool overwrite) {
   check_writable(path, overwrite);
 }
 
-void OutputPlan::expect_json() const {
-  if (options_.json && *options_.json != "-") check_named(*options_.json, options_.overwrite);
+void expect_json(const CommonOptions& options) {
+  if (options.json && *options.json != "-") check_named(*options.json, options.overwrite);
 }
 
-void OutputPlan::expect_results(const std::vector<OutputPart>& parts) const {
+void expect_results(const CommonOptions& options, const std::vector<OutputPart>& parts, bool replaces) {
   namespace fs = std::filesystem;
   std::vector<fs::path> taken;
   const auto take = [&](const std::string& what, const fs::path& path, bool named) {
-    named ? check_named(path, options_.overwrite) : check_writable(path, options_.overwrite || replaces_);
+    named ? check_named(path, options.overwrite) : check_writable(path, options.overwrite || replaces);
     std::error_code ignored;
     const fs::path place = fs::weakly_canonical(fs::absolute(path), ignored);
     if (std::ranges::find(taken, place) != taken.end())
@@ -197,13 +198,13 @@ void OutputPlan::expect_results(const std::vector<OutputPart>& parts) const {
                 "one would replace the other", "Give it a file of its own");
     taken.push_back(place);
   };
-  if (options_.json && *options_.json != "-") take("the JSON", *options_.json, true);
-  if (options_.out) take("the results", *options_.out / "result.json", false);
-  if (options_.out && has_page(options_.verb)) take("the page", *options_.out / page_name, false);
+  if (options.json && *options.json != "-") take("the JSON", *options.json, true);
+  if (options.out) take("the results", *options.out / "result.json", false);
+  if (options.out && has_page(options.verb)) take("the page", *options.out / page_name, false);
   for (const OutputPart& part : parts) {
     const bool named = part.place == OutputPart::file;
     for (const std::string& name : part.files)
-      if (named || options_.out) take(part.name, named ? fs::path(name) : *options_.out / name, named);
+      if (named || options.out) take(part.name, named ? fs::path(name) : *options.out / name, named);
   }
 }
 

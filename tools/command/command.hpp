@@ -4,7 +4,6 @@
 /// Checks of the values of options, for CLI::Option::check.
 #pragma once
 
-#include <clocale>
 #include <complex>
 #include <cstdint>
 #include <filesystem>
@@ -32,18 +31,9 @@ class App;
 
 namespace equidem {
 
-/// While it lives, numbers of options have a decimal point in this thread, whatever locale the process is in: CLI11
-/// reads them by strtold.
-class PointsInNumbers {
- public:
-  PointsInNumbers();
-  ~PointsInNumbers();
-  PointsInNumbers(const PointsInNumbers&) = delete;
-  PointsInNumbers& operator=(const PointsInNumbers&) = delete;
-
- private:
-  locale_t numbers_, before_;
-};
+/// Parses the words of a command line, whose numbers have a decimal point whatever locale the process is in.
+/// \throws CLI::ParseError
+void parse(CLI::App& app, std::vector<std::string> words);
 
 /// The number that the value of an option is; none where it is none.
 template <class Number>
@@ -129,23 +119,13 @@ OutputPart case_part(const Resolved& resolved, const std::string& note = {}) {
   return {"case.toml", write, OutputPart::page, {"case.toml"}};
 }
 
-/// Checks before the computation that the files of a verb can be written.
-class OutputPlan {
- public:
-  /// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
-  explicit OutputPlan(const CommonOptions& options, bool replaces = false) : options_(options), replaces_(replaces) {}
-
-  /// The files of deliver and those of the parts.
-  /// \throws Error (bad_input) where one could not be written, or two go to one place
-  void expect_results(const std::vector<OutputPart>& parts) const;
-  /// The file of --json alone, in an existing folder: a missing one is probably a typing error.
-  /// \throws Error (bad_input)
-  void expect_json() const;
-
- private:
-  const CommonOptions& options_;
-  bool replaces_;
-};
+/// Checks before the computation that the files of deliver and those of the parts can be written.
+/// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
+/// \throws Error (bad_input) where one could not be written, or two go to one place
+void expect_results(const CommonOptions& options, const std::vector<OutputPart>& parts, bool replaces = false);
+/// The file of --json alone, in an existing folder: a missing one is probably a typing error.
+/// \throws Error (bad_input)
+void expect_json(const CommonOptions& options);
 
 /// Keeps other processes from --out until the end of a verb, also from what it reads there; none without --out or on a
 /// dry run.
@@ -246,9 +226,10 @@ class SavedOnTheWay {
 };
 
 /// \param done "3 of 12 points are done"
-/// \param again how to continue a run with --out, "Run the same command with --resume to do the rest"
+/// \param again how to continue a run with --out
 /// \throws Error (interrupted)
-[[noreturn]] void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again);
+[[noreturn]] void throw_stopped(const CommonOptions& options, const std::string& done,
+                                const std::string& again = "Run the same command with --resume to do the rest");
 
 /// "optimized, assertions off".
 std::string build_description();

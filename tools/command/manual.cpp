@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "manual.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -16,6 +14,7 @@
 #include "equidem/output/results.hpp"
 
 #include "command_texts.hpp"
+#include "program.hpp"
 
 namespace equidem {
 namespace {
@@ -85,7 +84,6 @@ std::string reference(const std::string& page, int number) {
   return fmt::format(".BR {} ({})", escaped(page), number);
 }
 
-/// Arguments or options, each with its description.
 std::string options_of(const CLI::App& command, bool positional) {
   std::string out;
   for (const CLI::Option* option : command.get_options()) {

@@ -5,13 +5,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
-#include <filesystem>
 #include <memory>
 #include <new>
-#include <optional>
-#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
@@ -27,7 +23,6 @@
 #include "equidem/output/results.hpp"
 
 #include "command.hpp"
-#include "manual.hpp"
 
 namespace equidem {
 namespace {
@@ -73,7 +68,6 @@ void check_refusals(const Program& program, const std::string& word) {
   casefile::refuse_removed_word(word, program.name);
 }
 
-/// Report an error of CLI11 as one of the program.
 [[noreturn]] void parse_failure(const Program& program, const CLI::App& verb, const CLI::ParseError& error) {
   const std::string help = fmt::format("'{} {} --help' lists its options", program.name, verb.get_name());
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
@@ -92,7 +86,6 @@ void check_refusals(const Program& program, const std::string& word) {
   bad_input(problem, "", help);
 }
 
-/// The manual page of a verb or topic, or the completion for bash.
 std::string generated_text(const Program& program, const CLI::App& app, const std::string& kind,
                            const std::string& name) {
   if (kind == completion_topic) {
@@ -104,10 +97,7 @@ std::string generated_text(const Program& program, const CLI::App& app, const st
 }
 
 void show_help(const Program& program, const CLI::App& app, const std::vector<std::string>& arguments) {
-  if (arguments.size() < 2) {
-    print(app.help());
-    return;
-  }
+  if (arguments.size() < 2) return print(app.help());
   const auto take = [&](std::size_t most) {
     if (arguments.size() > most)
       bad_input(fmt::format("'{}' is one argument too many", arguments[most]), "",
@@ -116,8 +106,7 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
   std::vector<std::string> topics{manual_topic, completion_topic};
   if (std::ranges::find(topics, arguments[1]) != topics.end()) {
     take(3);
-    print(generated_text(program, app, arguments[1], arguments.size() > 2 ? arguments[2] : ""));
-    return;
+    return print(generated_text(program, app, arguments[1], arguments.size() > 2 ? arguments[2] : ""));
   }
   for (const HelpTopic& topic : program.topics) {
     topics.emplace_back(topic.name);
@@ -125,21 +114,19 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
     const bool further = arguments.size() > 2;
     const bool markdown = topic.markdown != nullptr && further && arguments[2] == "--markdown";
     take(markdown || topic.entry != nullptr ? 3 : 2);
-    print(markdown ? topic.markdown() : further ? topic.entry(arguments[2]) : topic.text());
-    return;
+    return print(markdown ? topic.markdown() : further ? topic.entry(arguments[2]) : topic.text());
   }
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     topics.push_back(command->get_name());
     if (arguments[1] != command->get_name()) continue;
     take(2);
-    print(command->help(program.name));
-    return;
+    return print(command->help(program.name));
   }
   bad_input(fmt::format("there is no help on '{}'", arguments[1]), "",
             did_you_mean(arguments[1], topics, fmt::format("There is help on {}", joined(topics))));
 }
 
-int run(const Program& program, const std::vector<std::string>& arguments) {
+void run(const Program& program, const std::vector<std::string>& arguments) {
   CLI::App app(program.description, program.name);
   app.formatter(std::make_shared<HelpText>(program));
   const auto without_end = [](std::string text) {
@@ -162,10 +149,7 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   std::vector<std::string> names = names_in(program.verbs);
   names.emplace_back("help");
   const std::string examples = fmt::format("'{} --help' shows examples", program.name);
-  if (!arguments.empty() && arguments[0] == "help") {
-    show_help(program, app, arguments);
-    return 0;
-  }
+  if (!arguments.empty() && arguments[0] == "help") return show_help(program, app, arguments);
   const std::string known = fmt::format("the {}s are {}", program.noun, joined(names));
   if (arguments.empty()) bad_input(fmt::format("a {} is missing", program.noun), known, examples);
   const auto verb = std::find_if(commands.begin(), commands.end(),
@@ -177,25 +161,21 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   }
 
   try {
-    const PointsInNumbers points;
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    parse(app, arguments);
   } catch (const CLI::CallForHelp&) {
     const bool of_verb = verb != commands.end() && (*verb)->parsed();
-    print(of_verb ? (*verb)->help(program.name) : app.help());
-    return 0;
+    return print(of_verb ? (*verb)->help(program.name) : app.help());
   } catch (const CLI::CallForVersion&) {
-    print(version_text());
-    return 0;
+    return print(version_text());
   } catch (const CLI::ParseError& error) {
     if (verb != commands.end()) parse_failure(program, **verb, error);
-    bad_input(fmt::format("unknown option '{}'", arguments[0]), "", examples);
   }
+  if (verb == commands.end()) bad_input(fmt::format("unknown option '{}'", arguments[0]), "", examples);
   std::vector<std::string> words{program.name};
   words.insert(words.end(), arguments.begin(), arguments.end());
   set_command_line(words);
-  const ProtectedInputs inputs(verb == commands.end() ? std::vector<std::filesystem::path>{}
-                                                      : replaceable_inputs(**verb));
-  return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
+  const ProtectedInputs inputs(replaceable_inputs(**verb));
+  runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 
 /// A descriptor of the standard streams that is closed would become that of the first file that is opened: what cannot
@@ -217,7 +197,8 @@ int run_program(const Program& program, int argc, char** argv) {
   };
   catch_interrupts();
   try {
-    return run(program, std::vector<std::string>(argv + 1, argv + argc));
+    run(program, std::vector<std::string>(argv + 1, argv + argc));
+    return 0;
   } catch (const Error& error) {
     return fail(error.what(), error.exit_code());
   } catch (const std::bad_alloc&) {

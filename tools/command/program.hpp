@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The main function of a program that is a list of commands: command line, help, exit codes.
+/// The main function of a program that is a list of commands: command line, help, exit codes. Its manual for man(1) and
+/// the completion of its command line are made from the command line itself.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,8 +16,8 @@ class App;
 
 namespace equidem {
 
-/// Runs a command after its options are read; returns the exit code.
-using Run = std::function<int()>;
+/// Runs a command after its options are read; what ends it otherwise than done is an Error.
+using Run = std::function<void()>;
 
 /// The effects of a case that a command takes; it refuses a case that asks for another one.
 struct Takes {
@@ -71,6 +73,16 @@ struct Program {
   std::vector<HelpTopic> topics = {};
   std::vector<Refusal> refusals = {};  ///< in place of "unknown verb" and "unknown option"
 };
+
+/// A page in the macros of man(7): the program's own in section 1, of a command PROGRAM-COMMAND(1), of a help topic
+/// PROGRAM-TOPIC(5). The first names all others under SEE ALSO.
+/// \param name of the command or topic; empty: the page of the program
+/// \return nothing where there is no such command or topic
+std::optional<std::string> man_page(const Program& program, const CLI::App& app, const std::string& name);
+
+/// A script for bash that completes commands, their options, and after options what the type of their value names:
+/// files, commands, keys of the case file and their words.
+std::string bash_completion(const Program& program, const CLI::App& app);
 
 /// Read the command line, carry out its command, report an error as one line on stderr.
 /// \return the exit code: 0 done; 1 the computation failed; 2 bad input or usage; 130 interrupted

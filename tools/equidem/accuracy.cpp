@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -11,7 +10,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/study/evaluate.hpp"
 
-#include "problem.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -27,19 +25,6 @@ Results json_of(const AccuracySetting& setting) {
   Results object;
   for (const auto& [key, value] : setting) object.set(key, value);
   return object;
-}
-
-constexpr double most_discs = 1e6;
-constexpr double work_per_rows = 2.4;  // time of a plane block of n x n discs as n^2.4, a little above that of n²
-
-std::int64_t one_beyond_a_multiple_of_four(double n) {
-  return 4 * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil((n - 1) / 4 - 1e-9))) + 1;
-}
-
-std::vector<double> solve_block(Case resolved) {
-  const Problem problem = prestressed(build_problem(std::move(resolved)));
-  EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-  return searched_values(*solve_case(problem, solver, problem.load_cases.front()).tension);
 }
 
 }  // namespace
@@ -131,51 +116,6 @@ ReachedAccuracy CaseSearch::reached() const {
                              .seconds = factor * seconds_,
                              .value = searched_.setting_of(finer),
                              .note = enough ? has_it_already : ""}};
-}
-
-bool block_can_be_chosen(const Case& resolved) {
-  return resolved.test && resolved.assembly.arrangement != nullptr;
-}
-
-SearchedSetting searched_block(const Case& resolved, double accuracy) {
-  const auto& [columns, rows] = std::tie(resolved.assembly.lattice.columns, resolved.assembly.lattice.rows);
-  const double aspect = static_cast<double>(columns) / rows;
-  return {.refinement = {.accuracy = accuracy,
-                         .order = 1,
-                         .first = one_beyond_a_multiple_of_four(std::max(9.0, 9 / aspect)),
-                         .most = one_beyond_a_multiple_of_four(std::sqrt(most_discs / aspect)) - 4,
-                         .unit = "rows",
-                         .admissible =
-                             [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }},
-          .setting_of =
-              [aspect](std::int64_t n) {
-                const auto wide = one_beyond_a_multiple_of_four(std::round(aspect * static_cast<double>(n)));
-                return AccuracySetting{{"assembly.rows", static_cast<double>(n)},
-                                       {"assembly.columns", static_cast<double>(wide)}};
-              },
-          .values_of = solve_block,
-          .of = "nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated",
-          .knob = fmt::format("the size of the block, {} x {} in the case", columns, rows),
-          .work_exponent = work_per_rows};
-}
-
-std::vector<double> searched_values(const TensionResult& result) {
-  return {result.poisson_ratio, std::log(std::abs(result.stiffness_ratio))};
-}
-
-ReachedAccuracy reached_by_block(const CaseSearch& search) {
-  ReachedAccuracy reached = search.reached();
-  const auto [fewest, most] = std::ranges::minmax(search.pilots());
-  reached.pilots = fmt::format("{} of {} to {} rows", counted(std::ssize(search.before()), "block"), fewest, most);
-  reached.pilots_factor = search.seconds_before();
-  auto& more = reached.ten_times_more;
-  if (const double rows = more.value[0].second, columns = more.value[1].second; rows * columns > most_discs) {
-    more.note = fmt::format(
-        "{} x {} discs, more than are tried; a periodic cell has no sides: 'equidem homogenize' gives both to "
-        "round-off",
-        columns, rows);
-  }
-  return reached;
 }
 
 ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double condition, double seconds) {

@@ -14,7 +14,6 @@
 #include "equidem/study/refinement.hpp"
 
 #include "command.hpp"
-#include "problem.hpp"
 
 namespace equidem {
 
@@ -93,20 +92,6 @@ class CaseSearch {
   std::vector<std::int64_t> proposed_;
   double seconds_ = 0, seconds_before_ = 0;  ///< of the last level, and of all before it
 };
-
-/// A tension test of a lattice misses the lattice without sides by about one over its rows. Finds the rows and columns,
-/// in the proportion of the case, for which nu, and the stiffness ratio (36) relative to itself, are within the
-/// accuracy. Sides of whole fours and one disc: gauges then sit alike in all.
-/// \param resolved read from `options`, one whose block can be chosen
-SearchedSetting searched_block(const Case& resolved, double accuracy);
-/// Whether the case is such a test; where it is not there is nothing to choose.
-bool block_can_be_chosen(const Case& resolved);
-inline constexpr const char* plan_of_blocks =
-    "blocks from 9 rows on are solved until their errors give the size that reaches it, at most 1e6 discs; below is "
-    "the block of the case";
-std::vector<double> searched_values(const TensionResult& result);
-/// \param search that has ended
-ReachedAccuracy reached_by_block(const CaseSearch& search);
 
 /// The error that the solver adds to the solution of a given assembly: its error bound.
 /// \throws Error (computation_failed) where the bound is above the accuracy, or not known

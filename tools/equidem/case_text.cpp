@@ -109,6 +109,13 @@ void add_bodies(Checksum& sum, std::span<const Grain> grains, std::span<const do
   }
 }
 
+void add_shapes(Checksum& sum, std::span<const Grain> grains, std::span<const Clump> clumps) {
+  for (const Grain& grain : grains)
+    if (grain.shape() == GrainShape::clump)
+      for (const Clump::Disc& disc : clumps[static_cast<std::size_t>(grain.clump)].discs)
+        for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
+}
+
 /// Motions of walls and of the cell.
 void add_motions(Checksum& sum, const GrainScene& scene) {
   for (const Wall& wall : scene.walls) {
@@ -134,12 +141,7 @@ std::string checksum_of(const GrainCase& resolved) {
   if (const auto& strengths = resolved.scene.strengths)
     for (std::size_t b = 0; b < strengths->tension.size(); ++b)
       sum.add(strengths->tension[b]), sum.add(strengths->shear[b]);
-  const auto shape_of = [&](const Grain& grain) {
-    for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
-      for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  };
-  for (const Grain& grain : resolved.scene.grains)
-    if (grain.shape() == GrainShape::clump) shape_of(grain);
+  add_shapes(sum, resolved.scene.grains, resolved.scene.clumps);
   if (resolved.stages.empty()) add_motions(sum, resolved.scene);
   return sum.text();
 }
@@ -149,10 +151,7 @@ std::string checksum_of(const GrainCase& resolved, std::size_t stage, std::size_
   Checksum sum;
   const StageCase& of = resolved.stages[stage];
   add_bodies(sum, of.bodies.added, std::span(resolved.densities).subspan(first_added));
-  for (const Grain& grain : of.bodies.added)
-    if (grain.shape() == GrainShape::clump)
-      for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
-        for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
+  add_shapes(sum, of.bodies.added, resolved.scene.clumps);
   add_motions(sum, of.scene);
   return sum.text();
 }

@@ -5,12 +5,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <set>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
@@ -24,11 +20,9 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
-#include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
@@ -186,6 +180,37 @@ std::string warning_of_wide_region(const Assembly& assembly) {
       loose.size() == 1 ? "it" : "them");
 }
 
+AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
+  AssemblySummary summary{.kind = a.kind,
+                          .discs = std::ssize(a.centres),
+                          .contacts = std::ssize(a.contacts),
+                          .area = {},
+                          .solid_fraction = 0,
+                          .mean_radius = a.mean_radius(),
+                          .stiffest = springs.largest(),
+                          .gaps = gaps_at_contacts(a),
+                          .periodic = a.periodic(),
+                          .contacts_found = a.gap_tolerance.has_value()};
+  if (!a.periodic() && a.cell_areas.empty()) return summary;
+  summary.area = a.area();
+  summary.solid_fraction = a.solid_fraction();
+  return summary;
+}
+
+/// Tells what was decided on forces at rest, or that the verb takes none.
+void add_prestress_decision(Results& results, const Problem& problem) {
+  if (!problem.prestress) {
+    if (carries_forces(problem.assembly))
+      results.line("not used",
+                   "forces at rest: solve, homogenize, stability, and quasistatic with frictional contacts, take them");
+    return;
+  }
+  results.line("forces at rest", problem.prestress->sentence);
+  results.set("prestress/counts", problem.prestress->springs.prestressed())
+      .set("prestress/largest", problem.prestress->largest)
+      .set("prestress/imbalance", problem.prestress->balance.relative);
+}
+
 std::atomic<SharedAssemblies*> shared_assemblies{nullptr};
 
 }  // namespace
@@ -243,9 +268,8 @@ Problem problem_of(Case resolved, Purpose purpose) {
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
   stop_if_interrupted();
-  std::string wide_region = warning_of_wide_region(assembly);
   Problem problem{std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
-  problem.wide_region = std::move(wide_region);
+  problem.wide_region = warning_of_wide_region(problem.assembly);
   return problem;
 }
 
@@ -271,17 +295,6 @@ void add_actions(Problem& problem) {
     problem.supports = problem.tension->supports;
     problem.load_cases = {{"", problem.tension->loads}};
   }
-}
-
-Problem build_problem(Case resolved) {
-  if (!acts(resolved)) {
-    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
-                 "Add [test], or [[support]] and [[load]]");
-  }
-  Problem problem = problem_of(std::move(resolved));
-  leave_out_loose(problem);
-  add_actions(problem);
-  return problem;
 }
 
 LargestDeformation largest_deformation(const Assembly& assembly, const ContactSprings& springs,
@@ -315,13 +328,6 @@ SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const N
   return result;
 }
 
-std::optional<TensionTheory> tension_theory(const Problem& problem) {
-  if (!problem.tension || !problem.springs.constants || !problem.springs.springs.uniform()) return {};
-  const Lattice* lattice = problem.resolved.assembly.arrangement;
-  if (lattice == nullptr || lattice->tension == nullptr) return {};
-  return lattice->tension(problem.springs.constants->ratio());
-}
-
 void add_largest_void(Results& results, const Assembly& assembly) {
   const std::optional<EmptyCircle> found = largest_void(assembly);
   if (!found) return;
@@ -336,27 +342,6 @@ void add_largest_void(Results& results, const Assembly& assembly) {
 
 const char* status_of(std::optional<std::int64_t> unstable_modes) {
   return !unstable_modes ? "unjudged" : *unstable_modes > 0 ? "unstable" : "solved";
-}
-
-ResultValue known(std::optional<std::int64_t> count) {
-  return count ? ResultValue(*count) : ResultValue(nullptr);
-}
-
-AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
-  AssemblySummary summary{.kind = a.kind,
-                          .discs = std::ssize(a.centres),
-                          .contacts = std::ssize(a.contacts),
-                          .area = {},
-                          .solid_fraction = 0,
-                          .mean_radius = a.mean_radius(),
-                          .stiffest = springs.largest(),
-                          .gaps = gaps_at_contacts(a),
-                          .periodic = a.periodic(),
-                          .contacts_found = a.gap_tolerance.has_value()};
-  if (!a.periodic() && a.cell_areas.empty()) return summary;
-  summary.area = a.area();
-  summary.solid_fraction = a.solid_fraction();
-  return summary;
 }
 
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys) {
@@ -409,7 +394,7 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
   results.line("springs", problem.springs.report);
   if (problem.resolved.viscoelastic)
     results.line("viscoelastic", describe(build_viscoelasticity(problem.resolved, problem.springs.constants)));
-  add_forces_at_rest(results, problem);
+  add_prestress_decision(results, problem);
   question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);
@@ -418,16 +403,6 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
 }
 
 namespace {
-
-/// Says whether the computation would be refused. \param memory_limit bytes; 0: what is available
-void add_memory_check(Results& results, const SolveEstimate& estimate, double memory_limit) {
-  try {
-    check_memory(estimate, memory_limit);
-    results.set("refusal", nullptr);
-  } catch (const Error& error) {
-    results.set("refusal", error.what()).line("", fmt::format("The computation would be refused: {}", error.what()));
-  }
-}
 
 /// \param resident bytes of the process before it solves
 /// \param drawing further bytes while the state is drawn, when the solver is there no longer
@@ -443,7 +418,12 @@ Results estimate_results(const SolveEstimate& e, double resident, double drawing
     results.add("factor_bytes", "", e.factor_bytes, "of that for the factor", {Shown::bytes})
         .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   }
-  add_memory_check(results, e, memory_limit);
+  try {
+    check_memory(e, memory_limit);
+    results.set("refusal", nullptr);
+  } catch (const Error& error) {
+    results.set("refusal", error.what()).line("", fmt::format("The computation would be refused: {}", error.what()));
+  }
   if (e.factor_nonzeros > 0)
     results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize",
                              {.digits = 3});
@@ -454,10 +434,10 @@ Results estimate_results(const SolveEstimate& e, double resident, double drawing
 
 }  // namespace
 
-int dry_run(const CommonOptions& given, const Problem& problem, const Results& further, AssemblyKeys keys,
-            const MoreMemory& more) {
+void dry_run(const CommonOptions& given, const Problem& problem, const Results& further, AssemblyKeys keys,
+             const MoreMemory& more) {
   const double resident = resident_memory();
-  const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+  const Effects effects = problem.effects();
   EquilibriumOptions options = problem.options();
   if (more.inertia) options.solver.method = SolverMethod::multifrontal;
   SolveEstimate estimate =
@@ -489,7 +469,6 @@ int dry_run(const CommonOptions& given, const Problem& problem, const Results& f
               .append(further)
               .append(estimate_results(estimate, resident, drawing, problem.resolved.solver.memory_limit)),
           problem.times);
-  return 0;
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {
@@ -539,13 +518,6 @@ std::optional<PrestressedSprings> choice_for(const Problem& problem) {
   });
 }
 
-/// Whether the forces at rest of the assembly, if it carries some, count.
-bool prestress_counts(const Problem& problem) {
-  if (!carries_forces(problem.assembly)) return false;
-  const auto choice = choice_for(problem);
-  return choice && choice->springs.prestressed();
-}
-
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where
 /// it is supported, with three where it is loaded, since fewer may roll.
 /// \param all those on measured sides too, whatever contacts they have
@@ -569,7 +541,9 @@ std::vector<std::uint8_t> held_by_the_case(const Problem& problem, bool all = fa
   for (const Support& support : problem.resolved.supports) hold(support.group, 2);
   for (const NamedLoads& loads : problem.resolved.load_cases)
     for (const Load& load : loads.loads) hold(load.group, 3);
-  if (prestress_counts(problem)) hold_loaded_at_rest(assembly, held);
+  if (!carries_forces(assembly)) return held;
+  if (const auto choice = choice_for(problem); choice && choice->springs.prestressed())
+    hold_loaded_at_rest(assembly, held);
   return held;
 }
 
@@ -585,13 +559,14 @@ bool loses_its_loads(const Problem& problem, const LoadBearingNetwork& network) 
          std::ranges::none_of(network.part->discs, [&](std::int32_t disc) { return loaded.contains(disc); });
 }
 
-}  // namespace
-
+/// Leaves out of a packing, or of an assembly from a file, the bodies that no contact holds in place (LeaveOut::loose)
+/// and that have no support or load of their own; on a side of the assembly they are left out even so. The cells and
+/// sides of the rest are measured again. Bodies and contacts are then numbered anew.
 void leave_out_loose(Problem& problem) {
   const AssemblyKind kind = problem.resolved.assembly.kind;
   if (kind != AssemblyKind::packing && kind != AssemblyKind::file) return;
   Assembly& assembly = problem.assembly;
-  const Effects effects = derive_effects(assembly, problem.springs.springs, problem.resolved.rotation);
+  const Effects effects = problem.effects();
   LoadBearingNetwork network =
       load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem), LeaveOut::loose);
   const auto none_left = [&] { return network.part && network.part->discs.empty(); };
@@ -622,6 +597,19 @@ void leave_out_loose(Problem& problem) {
   assembly = std::move(rest);
 }
 
+}  // namespace
+
+Problem build_problem(Case resolved) {
+  if (!acts(resolved)) {
+    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
+                 "Add [test], or [[support]] and [[load]]");
+  }
+  Problem problem = problem_of(std::move(resolved));
+  leave_out_loose(problem);
+  add_actions(problem);
+  return problem;
+}
+
 std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
                                           std::vector<ContactForce> changes) {
   for (std::size_t c = 0; springs.prestressed() && c < changes.size(); ++c) {
@@ -636,19 +624,6 @@ Problem prestressed(Problem problem) {
   problem.prestress = choice_for(problem);
   if (problem.prestress) problem.springs.springs = problem.prestress->springs;
   return problem;
-}
-
-void add_forces_at_rest(Results& results, const Problem& problem) {
-  if (!problem.prestress) {
-    if (carries_forces(problem.assembly))
-      results.line("not used",
-                   "forces at rest: solve, homogenize, stability, and quasistatic with frictional contacts, take them");
-    return;
-  }
-  results.line("forces at rest", problem.prestress->sentence);
-  results.set("prestress/counts", problem.prestress->springs.prestressed())
-      .set("prestress/largest", problem.prestress->largest)
-      .set("prestress/imbalance", problem.prestress->balance.relative);
 }
 
 }  // namespace equidem

@@ -11,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/assembly/build.hpp"
@@ -53,6 +52,7 @@ struct Problem {
             .solver = resolved.solver,
             .mechanisms = by_chance ? Mechanisms::hold : Mechanisms::refuse};
   }
+  [[nodiscard]] Effects effects() const { return derive_effects(assembly, springs.springs, resolved.rotation); }
 };
 
 /// The assembly with its cells, or as it is where it has no contacts or its cells cannot be measured.
@@ -129,15 +129,9 @@ const char* status_of(std::optional<std::int64_t> unstable_modes);
 
 SolvedCase solve_case(const Problem& problem, EquilibriumSolver& solver, const NamedLoads& loads);
 
-/// Theory of the tension test on a lattice of equal springs; none for other assemblies and springs.
-std::optional<TensionTheory> tension_theory(const Problem& problem);
-
 /// The stability where the solver cannot judge it.
 inline constexpr const char* stability_not_known =
     "NOT KNOWN: this solver does not count the negative pivots that would tell; method = \"auto\" does";
-
-/// A count, or null where it is not known.
-ResultValue known(std::optional<std::int64_t> count);
 
 /// Keys of the assembly in the JSON.
 enum class AssemblyKeys {
@@ -159,7 +153,6 @@ struct AssemblySummary {
   bool periodic = false;
   bool contacts_found = false;  ///< by a tolerance
 };
-AssemblySummary summary_of(const Assembly& assembly, const ContactSprings& springs);
 /// Gives the results from a summary. \param of_whole lines that need the whole assembly, after those of its area
 Results problem_results(const Problem& problem, const AssemblySummary& summary, const Results& of_whole,
                         const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
@@ -176,9 +169,8 @@ struct MoreMemory {
   int at_once = 1;                     ///< solutions beside each other
 };
 /// --dry-run: delivers the problem, further results, size, memory and work of a factorization.
-/// \return the exit code, 0
-int dry_run(const CommonOptions& options, const Problem& problem, const Results& further, AssemblyKeys keys,
-            const MoreMemory& more = {});
+void dry_run(const CommonOptions& options, const Problem& problem, const Results& further, AssemblyKeys keys,
+             const MoreMemory& more = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";
@@ -188,12 +180,6 @@ inline constexpr const char* no_solid = "no isotropic solid has these moduli: K 
 /// \param of_solid null in plane strain where no solid has these moduli
 Results moduli_results(const EffectiveModuli& moduli, const std::string& name = "moduli", bool of_solid = false);
 
-/// Leave out of a packing, or of an assembly from a file, the bodies that no contact holds in place (LeaveOut::loose)
-/// and that have no support or load of their own; on a side of the assembly they are left out even so. The cells and
-/// sides of the rest are measured again. Bodies and contacts are then numbered anew.
-/// \param problem its assembly, springs and left_out are changed
-void leave_out_loose(Problem& problem);
-
 /// The problem with the decision whether the forces at rest count, as the case asks; where they do, its springs have
 /// their geometric stiffness.
 /// \throws Error (bad_input) as choose_prestress
@@ -202,8 +188,5 @@ Problem prestressed(Problem problem);
 /// Forces of the contacts with those at rest, where these count. \param changes by the loads
 std::vector<ContactForce> forces_in_total(const Assembly& assembly, const ContactSprings& springs,
                                           std::vector<ContactForce> changes);
-
-/// Tells what was decided, or that the verb takes no such forces.
-void add_forces_at_rest(Results& results, const Problem& problem);
 
 }  // namespace equidem

@@ -3,14 +3,10 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/vtk.hpp"
 
 namespace equidem {
@@ -49,23 +45,6 @@ std::vector<ResultArray> state_arrays(const std::string& prefix,
   return arrays;
 }
 
-std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey) {
-  std::vector<double> along, squared_frequencies;
-  std::vector<Vec2> wave_vectors;
-  for (const PathPoint& point : survey.path) {
-    along.push_back(point.along);
-    wave_vectors.push_back(point.at.q);
-    squared_frequencies.insert(squared_frequencies.end(), point.squared_frequencies.begin(),
-                               point.squared_frequencies.end());
-  }
-  const std::size_t branches = along.empty() ? 0 : squared_frequencies.size() / along.size();
-  ResultArray table = array_of("dispersion/squared_frequencies", "1/s²", std::move(squared_frequencies), branches);
-  table.rows = along.size();
-  table.stride = branches;
-  return {array_of("dispersion/along", "rad/m", std::move(along), 1),
-          array_of("dispersion/wave_vectors", "1/m", std::move(wave_vectors), 2), std::move(table)};
-}
-
 std::vector<std::string> state_names(const OutputCase& wanted, const std::string& suffix) {
   std::vector<std::string> names;
   if (wanted.csv)
@@ -77,9 +56,9 @@ std::vector<std::string> state_names(const OutputCase& wanted, const std::string
   return names;
 }
 
-void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix) {
+void remove_files(const CommonOptions& options, const std::vector<std::string>& names) {
   std::error_code ignored;
-  for (const std::string& name : state_names(wanted, suffix)) std::filesystem::remove(*options.out / name, ignored);
+  for (const std::string& name : names) std::filesystem::remove(*options.out / name, ignored);
 }
 
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,

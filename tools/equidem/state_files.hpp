@@ -15,7 +15,6 @@
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/statics/equilibrium.hpp"
-#include "equidem/waves/wave_survey.hpp"
 
 #include "command.hpp"
 
@@ -49,10 +48,6 @@ std::vector<ResultArray> motion_arrays(const std::string& prefix,
 /// PREFIXbending_moments (contacts) on the first disc in N, and of the discs that supports hold PREFIXsupported_discs,
 /// PREFIXreactions (2 columns) in N/m and PREFIXreaction_moments in N.
 std::vector<ResultArray> state_arrays(const std::string& prefix, const std::shared_ptr<const Equilibrium>& equilibrium);
-/// Along the path through the Brillouin zone: dispersion/along in rad/m, dispersion/wave_vectors in 1/m and
-/// dispersion/squared_frequencies, ascending, in 1/s².
-std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey);
-
 /// The pictures alone of what is to be written.
 inline OutputCase pictures_of(OutputCase wanted) {
   wanted.csv = wanted.vtk = false;
@@ -62,8 +57,8 @@ inline OutputCase pictures_of(OutputCase wanted) {
 
 /// The names of the files of a state and of its picture.
 std::vector<std::string> state_names(const OutputCase& wanted, const std::string& suffix);
-/// Removes these files of an earlier computation, where the present one has no state to write over them.
-void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix);
+/// Removes files of an earlier computation, where the present one has none to write over them.
+void remove_files(const CommonOptions& options, const std::vector<std::string>& names);
 
 /// Tables and files for ParaView that [output] asks for.
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,

@@ -102,10 +102,8 @@ VerbRun::VerbRun(const std::string& verb, const std::filesystem::path& case_file
   std::vector<std::string> arguments{case_file.string()};
   for (const std::string& assignment : overrides) arguments.insert(arguments.end(), {"--set", assignment});
   arguments.insert(arguments.end(), options.begin(), options.end());
-  std::ranges::reverse(arguments);
   try {
-    const PointsInNumbers points;
-    command_.parse(arguments);
+    parse(command_, std::move(arguments));
   } catch (const CLI::ParseError& error) {
     bad_input(error.what(), "", "See 'equidem help'");
   }

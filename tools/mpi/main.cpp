@@ -89,7 +89,6 @@ Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Ibarrier(PETSC_COMM_WORLD, &request);
     MPI_Wait(&request, MPI_STATUS_IGNORE);
-    return 0;
   };
 }
 

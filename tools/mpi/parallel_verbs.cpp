@@ -205,7 +205,7 @@ void scatter_problem(const Ranks& ranks, PartProblem& p, bool homogenize) {
     whole.problem.emplace(
         prestressed(homogenize ? problem_of(std::move(resolved)) : build_problem(std::move(resolved))));
     const Problem& problem = *whole.problem;
-    whole.effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+    whole.effects = problem.effects();
     p.of_problem = problem_results(problem, whole.effects);
     p.problem.tension = problem.tension;
     if (homogenize) {
@@ -379,7 +379,7 @@ std::unique_ptr<FolderLock> lock_files(const petsc::Ranks& ranks, const CommonOp
       for (int rank = 0; rank < ranks.count(); ++rank)
         std::ranges::move(vtk_piece_names(state, rank), std::back_inserter(files.files));
     }
-    OutputPlan(options).expect_results({files});
+    expect_results(options, {files});
     if (options.out) lock = std::make_unique<FolderLock>(*options.out);
   });
   return lock;

@@ -9,13 +9,12 @@
 namespace equidem {
 namespace {
 
-int count_discs(const CommonOptions& common) {
+void count_discs(const CommonOptions& common) {
   const Case resolved = read_case(common);
   const Assembly assembly = build_assembly(resolved);
   Results results;
   results.line("assembly").add("discs", "", assembly.size(), "disc", {Shown::count});
   deliver(common, "counted", results, {});
-  return 0;
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -38,6 +37,8 @@
 
 namespace equidem {
 namespace {
+
+constexpr double quotient_rounding = 1e-12;  // of a quotient that is 1 but for rounding
 
 /// The second strength beside the tensile one.
 struct SecondStrength {
@@ -100,10 +101,9 @@ void add_mean(Results& out, const std::string& key, const std::string& name, con
   std::isfinite(mean.standard_deviation)
       ? out.add(place + "_deviation", "samples scatter by", mean.standard_deviation, unit, {.digits = 2})
       : out.set(place + "_deviation", nullptr);
-  constexpr double rounding = 1e-12;
   const double off = mean.mean / wanted - 1;
-  std::abs(off) > rounding ? out.add(place + "_off", "off by", off, "", {Shown::percent})
-                           : out.note(", as wanted").set(place + "_off", off);
+  std::abs(off) > quotient_rounding ? out.add(place + "_off", "off by", off, "", {Shown::percent})
+                                    : out.note(", as wanted").set(place + "_off", off);
 }
 
 void add_reached_strengths(Results& out, const StrengthTargets& wanted, const StrengthCalibration& found) {
@@ -156,7 +156,7 @@ Results strength_results(const Problem& problem, const StrengthSample& first, co
   const Case& resolved = problem.resolved;
   const StrengthTargetCase& target = *resolved.strength_target;
   const StrengthOptions given = resolved.strength.value_or(StrengthOptions{});
-  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation));
+  Results out = problem_results(problem, problem.effects());
   add_unused(out, resolved);
   add_wanted_strengths(out, target.wanted);
   add_tests(out, target, first, found);
@@ -173,36 +173,31 @@ std::int64_t number_of_samples(const Case& resolved) {
   return resolved.assembly.random() || scattered ? resolved.strength_target->samples : 1;
 }
 
-/// The assembly of the k-th sample.
-Assembly sample_assembly(Case resolved, std::uint64_t k) {
-  resolved.assembly.delaunay.seed += k;
-  if (resolved.assembly.packing) resolved.assembly.packing->seed += k;
-  return build_assembly(resolved);
-}
-
 std::vector<SeededSample> build_samples(const Problem& first) {
-  const Case& resolved = first.resolved;
+  Case resolved = first.resolved;
   StrengthTestOptions test = resolved.strength_target->test;
   test.rotation = resolved.rotation;
   test.solver = resolved.solver;
   const std::uint64_t seed = resolved.strength.value_or(StrengthOptions{}).seed;
   std::vector<SeededSample> samples;
   for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(number_of_samples(resolved)); ++k) {
-    Assembly assembly = k == 0 || !resolved.assembly.random() ? first.assembly : sample_assembly(first.resolved, k);
+    Assembly assembly = k == 0 || !resolved.assembly.random() ? first.assembly : build_assembly(resolved);
     ContactSprings springs = k == 0 ? first.springs.springs : build_springs(resolved, assembly).springs;
     samples.push_back({StrengthSample(std::move(assembly), std::move(springs), test), seed + k});
+    ++resolved.assembly.delaunay.seed;
+    if (resolved.assembly.packing) ++resolved.assembly.packing->seed;
   }
   return samples;
 }
 
-int dry_run_strengths(const CommonOptions& options, Problem& problem) {
+void dry_run_strengths(const CommonOptions& options, Problem& problem) {
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
   problem.breaks = true;
   Results results;
   add_unused(results, problem.resolved);
   const std::int64_t tests = 2 * number_of_samples(problem.resolved);
   const int at_once = static_cast<int>(std::min<std::int64_t>(thread_count(), tests));
-  return dry_run(options, problem, results, AssemblyKeys::size, {.at_once = at_once});
+  dry_run(options, problem, results, AssemblyKeys::size, {.at_once = at_once});
 }
 
 std::string text_of_strengths(const Case& resolved, const StrengthCalibration& found,
@@ -217,13 +212,6 @@ std::string text_of_strengths(const Case& resolved, const StrengthCalibration& f
                   wanted.tensile, second, found.samples.size() > 1 ? "the means" : "those",
                   counted(std::ssize(found.samples), "sample"), to_string(resolved.strength_target->test.axis),
                   to_string(resolved.strength_target->test.ends)));
-}
-
-void check_alone(const Case& resolved) {
-  if (resolved.material)
-    bad_input_at(resolved.where("strength_target"), "[material] and [strength_target] are both given",
-                 "strengths are calibrated for springs that are known",
-                 "Calibrate the springs first, with --springs FILE, and take springs = \"FILE\" here");
 }
 
 /// The file of what is found: the one that is named, or NOUN.toml in --out, or none.
@@ -273,13 +261,16 @@ Results refusal_results(const Error& refusal) {
 
 /// With [strength_target]: wanted strengths -> strengths and friction of the contacts.
 /// \param file to which they are written; none: strength.toml in --out
-int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
-  check_alone(read);
+void calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
+  if (read.material)
+    bad_input_at(read.where("strength_target"), "[material] and [strength_target] are both given",
+                 "strengths are calibrated for springs that are known",
+                 "Calibrate the springs first, with --springs FILE, and take springs = \"FILE\" here");
   const FoundFile strengths_out(options, "strength", file);
   const auto problem_found = std::make_shared<std::optional<Problem>>();
   const std::vector<OutputPart> parts{case_part([=]() -> const Case& { return (*problem_found)->resolved; }),
                                       strengths_out.part()};
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   Problem& problem = problem_found->emplace(problem_of(std::move(read)));
   const Case& resolved = problem.resolved;
@@ -322,10 +313,8 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts, failure);
   if (refusal) throw *refusal;
   strengths_out.say_written(options);
-  return 0;
 }
 
-/// One value, or the two ends of a range.
 std::string range_text(double first, double last) {
   return first == last ? fmt::format("{:.9g}", first) : fmt::format("{:.6g} .. {:.6g}", first, last);
 }
@@ -393,9 +382,8 @@ Results engine_springs_results(const Assembly& assembly, const ContactSprings& s
 }
 
 std::string percent_beside(double value, double wanted) {
-  constexpr double rounding = 1e-12;
   const double off = value / wanted - 1;
-  return std::abs(off) < rounding ? "as wanted" : fmt::format("{:+.3g} %", 100 * off);
+  return std::abs(off) < quotient_rounding ? "as wanted" : fmt::format("{:+.3g} %", 100 * off);
 }
 
 std::string shown_springs(const SpringConstants& k) {
@@ -444,11 +432,6 @@ void add_method(Results& out, const Calibration& found) {
                            ? "a uniform displacement gradient at its boundary, stiffer than the large sample"
                            : "the tractions of a uniform stress at its boundary, softer than the large "
                              "sample"));
-}
-
-/// Moduli of an assembly with their keys alone.
-Results moduli_keys(const EffectiveModuli& m) {
-  return moduli_results(m, "", true).set("anisotropy", m.anisotropy);
 }
 
 void add_reached(Results& out, const Calibration& found) {
@@ -512,7 +495,7 @@ void add_mean_field(Results& out, const MeanFieldGuess& guess, const Case& resol
     return;
   }
   const EffectiveModuli& m = *guess.moduli;
-  out.set("mean_field/achieved", moduli_keys(m));
+  out.set("mean_field/achieved", moduli_results(m, "", true).set("anisotropy", m.anisotropy));
   out.line("",
            fmt::format("with them this assembly has G = {:.6g} Pa ({}), K = {:.6g} Pa ({}), nu = {:.6g} in plane {} "
                        "in place of {:.6g}",
@@ -522,7 +505,6 @@ void add_mean_field(Results& out, const MeanFieldGuess& guess, const Case& resol
                        wanted.poisson_ratio));
 }
 
-/// Density, wave speeds and the time step that it allows.
 void add_motion(Results& out, const Problem& problem, double disc_density, const ElasticModuli& wanted) {
   const Assembly& a = problem.assembly;
   const double fraction = a.solid_fraction(), density = disc_density * fraction;
@@ -537,9 +519,7 @@ void add_motion(Results& out, const Problem& problem, double disc_density, const
         .add("wave_speeds/shear", "Vs =", speeds.shear, "m/s");
   }
   const std::vector<Inertia> inertia = inertia_of(a, disc_density, problem.resolved.assembly.body);
-  const ContactSprings& springs = problem.springs.springs;
-  const bool rotation = derive_effects(a, springs, problem.resolved.rotation).rotation;
-  const double omega = std::sqrt(element_bound(a, springs, inertia, rotation));
+  const double omega = std::sqrt(element_bound(a, problem.springs.springs, inertia, problem.effects().rotation));
   out.line("time step")
       .add("guaranteed_step", "any below", 2 / omega, "s is stable, from the highest frequency of a single contact");
 }
@@ -558,8 +538,7 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   const SpringConstants& k = found.springs;
   const Case& resolved = problem.resolved;
   const ElasticModuli& wanted = resolved.material->moduli;
-  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation),
-                                AssemblyKeys::size);
+  Results out = problem_results(problem, problem.effects(), AssemblyKeys::size);
   out.set("kN", k.kN).set("kT", k.kT).set("ratio", k.ratio()).set("weighting", to_string(resolved.weighting));
   add_wanted(out, wanted);
   add_method(out, found);
@@ -578,18 +557,7 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   return out;
 }
 
-/// The range of Poisson's ratio of an assembly that has not the one wanted.
-Results feasible_results(const Problem& problem, const Calibration& range) {
-  const Case& resolved = problem.resolved;
-  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation),
-                                AssemblyKeys::size);
-  add_wanted(out, resolved.material->moduli);
-  add_range(out, range, resolved.material->moduli.plane);
-  return out;
-}
-
-struct CalibrateVerb {
-  CommonOptions common;
+struct CalibrateVerb : CommonOptions {
   std::optional<std::filesystem::path> springs;   ///< path of the springs file
   std::optional<std::filesystem::path> strength;  ///< path of the strength file
 };
@@ -604,7 +572,6 @@ CalibrateOptions calibrate_options(const Case& resolved) {
           .static_only = resolved.material->static_only};
 }
 
-/// The text of the springs file, with the moduli that it was made for and what shows them.
 std::string text_of_springs(const Case& resolved, const Assembly& assembly, const Calibration& found) {
   const ElasticModuli& m = resolved.material->moduli;
   const std::string moduli =
@@ -643,9 +610,8 @@ Problem problem_with_material(Case resolved) {
   return {std::move(resolved), std::move(assembly), std::move(unknown), {}, {}, {}, std::move(times)};
 }
 
-int calibrate(const CalibrateVerb& options) {
-  const CommonOptions& common = options.common;
-  Case read = read_case(common);
+void calibrate(const CalibrateVerb& options) {
+  Case read = read_case(options);
   const bool strengths = read.strength_target.has_value();
   if (options.springs && strengths)
     bad_input("--springs asks for springs, and the case for strengths", "[strength_target] takes its springs as given",
@@ -653,9 +619,9 @@ int calibrate(const CalibrateVerb& options) {
   if (options.strength && !strengths)
     bad_input("--strength asks for strengths, and the case for springs", "there is no [strength_target]",
               "Add it, or leave out --strength");
-  if (strengths) return calibrate_strengths(common, options.strength, std::move(read));
+  if (strengths) return calibrate_strengths(options, options.strength, std::move(read));
   const std::string assembly_name = assembly_file_name("assembly", read.output.assembly.value_or(AssemblyFormat::json));
-  const FoundFile springs_out(common, "springs", options.springs);
+  const FoundFile springs_out(options, "springs", options.springs);
   const auto problem_found = std::make_shared<std::optional<Problem>>();
   const auto write = [=](const CommonOptions& into) {
     write_assembly(*into.out / assembly_name, (*problem_found)->assembly, into.overwrite);
@@ -663,11 +629,11 @@ int calibrate(const CalibrateVerb& options) {
   const std::vector<OutputPart> parts{case_part([=]() -> const Case& { return (*problem_found)->resolved; }),
                                       {assembly_name, write, OutputPart::folder, {assembly_name}},
                                       springs_out.part()};
-  OutputPlan(common).expect_results(parts);
-  const auto lock = lock_out(common);
+  expect_results(options, parts);
+  const auto lock = lock_out(options);
   Problem& problem = problem_found->emplace(problem_with_material(std::move(read)));
   const Case& resolved = problem.resolved;
-  if (common.dry_run) return dry_run(common, problem, {}, AssemblyKeys::size);
+  if (options.dry_run) return dry_run(options, problem, {}, AssemblyKeys::size);
 
   const ElasticModuli& wanted = resolved.material->moduli;
   const CalibrateOptions how = calibrate_options(resolved);
@@ -687,8 +653,10 @@ int calibrate(const CalibrateVerb& options) {
     }
   }();
   if (refusal) {
-    deliver(common, "not_feasible", feasible_results(problem, found).append(refusal_results(*refusal)), problem.times,
-            parts);
+    Results results = problem_results(problem, problem.effects(), AssemblyKeys::size);
+    add_wanted(results, wanted);
+    add_range(results, found, wanted.plane);
+    deliver(options, "not_feasible", results.append(refusal_results(*refusal)), problem.times, parts);
     throw *refusal;
   }
   const bool converged = !failure;
@@ -711,16 +679,15 @@ int calibrate(const CalibrateVerb& options) {
   Results results = calibrated_results(problem, found, guess);
   converged ? springs_out.found(results, text_of_springs(resolved, problem.assembly, found))
             : springs_out.not_found(results, "what is above is the best that was found");
-  deliver(common, "calibrated", std::move(results), std::move(times), parts, failure);
-  springs_out.say_written(common);
-  return 0;
+  deliver(options, "calibrated", std::move(results), std::move(times), parts, failure);
+  springs_out.say_written(options);
 }
 
 }  // namespace
 
 Run declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateVerb>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command.add_option("--springs", options->springs, "write the springs to this file, for springs = \"FILE\"")
       ->check(file_name())
       ->type_name("FILE");

@@ -46,7 +46,6 @@ struct Exported {
   }
 };
 
-/// Options of the verb.
 struct ExportOptions : CommonOptions {
   std::string to;                   ///< name of the format
   std::vector<std::string> accept;  ///< words of EngineFeatureRow::accept
@@ -54,20 +53,16 @@ struct ExportOptions : CommonOptions {
 
 constexpr double usual_density = 2500;  // kg/m³, where a case in equilibrium gives none: it does not change the rest
 
-/// A model with the case that it comes from.
 struct CaseModel {
   EngineModel model;
   Exported exported;
   std::vector<std::string> notes = {};
 };
 
-/// Refuses what the engine does not carry, then chooses the step: a motion that grows has none.
-template <typename Step>
-void finish(EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where,
-            const Step& step) {
+/// Refuses what the engine does not carry, before a step is chosen: a motion that grows has none.
+void check_carried(const EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where) {
   casefile::with_place(where, [&] { require_carried(model.found, engine, options.accept); });
   stop_if_interrupted();
-  model.time_step = step();
 }
 
 /// The scene of a case without [run]: its supports and loads, there from the start.
@@ -110,12 +105,11 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   if (model.to_rest) model.found.erase(EngineFeature::given_at_start);
   if (model.to_rest && model.local_damping == 0) model.local_damping = settings.damping.local = damping_to_rest;
   if (run) model.duration = run->duration.value_or(0);
-  finish(model, engine, options, resolved.document.where(), [&] {
-    TimeStepOptions wanted = run ? run->time_step : TimeStepOptions{};
-    if (run) wanted.duration = run->duration.value_or(0);
-    const double step = choose_time_step(scene, settings, wanted).step;
-    return run && run->duration ? std::min(step, *run->duration) : step;
-  });
+  check_carried(model, engine, options, resolved.document.where());
+  TimeStepOptions wanted = run ? run->time_step : TimeStepOptions{};
+  wanted.duration = model.duration;
+  model.time_step = choose_time_step(scene, settings, wanted).step;
+  if (run && run->duration) model.time_step = std::min(model.time_step, *run->duration);
   made.notes = problem->left_out.sentences;
   if (carries_forces(problem->assembly)) made.notes.emplace_back("the exported contacts start without forces at rest");
   if (!disc_density(resolved, problem->assembly))
@@ -135,7 +129,8 @@ CaseModel grain_model(const ExportOptions& options, Engine engine) {
                  {{}, {case_part([resolved]() -> const TomlValue& { return resolved->document; })}}};
   made.model.title = resolved->title;
   made.model.duration = resolved->duration;
-  finish(made.model, engine, options, resolved->document.where(), [&] { return step; });
+  made.model.time_step = step;
+  check_carried(made.model, engine, options, resolved->document.where());
   return made;
 }
 
@@ -159,14 +154,6 @@ Exported export_to(const ExportOptions& options, Engine engine,
   }
   for (EngineFile& file : files_of(model)) made.exported.add(file.name, [text = std::move(file.text)] { return text; });
   return std::move(made.exported);
-}
-
-Exported export_to_lammps(const ExportOptions& options) {
-  return export_to(options, Engine::lammps, lammps_files);
-}
-
-Exported export_to_yade(const ExportOptions& options) {
-  return export_to(options, Engine::yade, yade_files);
 }
 
 constexpr const char* stiffness_file = "stiffness.mtx";
@@ -255,8 +242,7 @@ Exported export_to_matrix_market(const ExportOptions& options) {
   Stopwatch watch;
   const auto system = std::make_shared<const LinearSystem>(equations_of(*problem));
   made.times.add("assemble", watch.lap());
-  made.results = problem_results(
-      *problem, derive_effects(problem->assembly, problem->springs.springs, problem->resolved.rotation));
+  made.results = problem_results(*problem, problem->effects());
   made.results.line("equations")
       .add("unknowns", "", system->size(), "unknown", {Shown::count})
       .add("stiffness_entries", "", system->stiffness.first.back(), "entries in the lower triangle")
@@ -284,21 +270,23 @@ struct ExportFormat {
 };
 
 constexpr std::array export_formats{
-    ExportFormat{"lammps", "in.equidem and its data file", export_to_lammps},
-    ExportFormat{"yade", "run_equidem.py", export_to_yade},
+    ExportFormat{"lammps", "in.equidem and its data file",
+                 [](const ExportOptions& options) { return export_to(options, Engine::lammps, lammps_files); }},
+    ExportFormat{"yade", "run_equidem.py",
+                 [](const ExportOptions& options) { return export_to(options, Engine::yade, yade_files); }},
     ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx)", export_to_matrix_market},
 };
 
-int export_case(const ExportOptions& options) {
+void export_case(const ExportOptions& options) {
   prepare(options);
   casefile::refuse_removed_word(options.to, "export");
   const ExportFormat& format = entry_named(export_formats, options.to, "format of --to");
   if (!options.out && !options.dry_run)
     bad_input("export without --out", "its files need a folder", "Name one: --out DIR");
-  OutputPlan(options).expect_results({});
+  expect_results(options, {});
   const auto lock = lock_out(options);
   Exported made = format.make(options);
-  OutputPlan(options).expect_results(made.files);
+  expect_results(options, made.files);
   const std::vector others(made.files.begin() + 1, made.files.end());  // but the case
   made.results.line("files", joined(others, &OutputPart::name));
   made.results.set("format", format.name);
@@ -309,7 +297,6 @@ int export_case(const ExportOptions& options) {
   }
   deliver(options, options.dry_run ? "dry_run" : "done", made.results, made.times,
           options.dry_run ? std::vector<OutputPart>{} : made.files);
-  return 0;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "homogenize/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
@@ -17,36 +16,36 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_accuracy.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
-#include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "accuracy.hpp"
-#include "problem.hpp"
+#include "homogenize/homogenize.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr const char* statistics_name = "ensemble.csv";
-constexpr std::array ensemble_plot_names{"shear_modulus", "poisson_ratio", "scatter"};
 
 /// An ensemble as it was asked for, and what came of it.
 struct EnsembleResult {
   std::string title;
-  EnsemblePlan plan;
-  std::optional<double> accuracy;  ///< relative, wanted
-  std::vector<EnsembleSample> samples;
-  EnsembleStatistics statistics;
+  EnsemblePlan plan = {};
+  std::optional<double> accuracy = {};  ///< relative, wanted
+  std::vector<EnsembleSample> samples = {};
+  EnsembleStatistics statistics = {};
+  std::function<void()> save_samples = {};  ///< writes the table of the samples
+  std::optional<Error> failure = {};
+
+  [[nodiscard]] bool complete() const { return !failure || failure->kind() != ErrorKind::interrupted; }
 };
 
 std::string with_unit(const EnsembleQuantity& quantity, const std::string& what = "") {
   return quantity.name + what + (quantity.modulus ? "_Pa" : "");
 }
 
-/// One row per cell: discs, seed, discs_built, the moduli, refusal.
 Table samples_table(const std::vector<EnsembleSample>& samples) {
   Table table;
   table.add("discs", samples, &EnsembleSample::discs).add("seed", samples, &EnsembleSample::seed);
@@ -77,8 +76,6 @@ std::vector<EnsembleSample> read_samples(const std::filesystem::path& path) {
   return samples;
 }
 
-/// One row per size: discs, mean_discs, samples, refused, and of each quantity the mean, standard deviation, standard
-/// error and confidence limits.
 Table statistics_table(const EnsembleStatistics& statistics) {
   const auto& sizes = statistics.sizes;
   Table table;
@@ -141,8 +138,8 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
     }
     plot.series.push_back(fit);
   }
-  const bool bounded = std::any_of(low.y.begin(), low.y.end(), [](double y) { return std::isfinite(y); });
-  if (bounded) plot.series.insert(plot.series.end(), {low, high});
+  if (std::ranges::any_of(low.y, [](double y) { return std::isfinite(y); }))
+    plot.series.insert(plot.series.end(), {low, high});
   plot.series.push_back(mean);
   return plot;
 }
@@ -179,19 +176,20 @@ Plot plot_scatter(const EnsembleResult& result) {
   return plot;
 }
 
-/// Name and plot: means with their confidence limits and all samples against size, of G and of nu (plane strain); the
-/// scatter of K, G and nu against size, where they scatter.
-std::vector<std::pair<std::string, Plot>> ensemble_plots(const EnsembleResult& result) {
-  std::vector<std::pair<std::string, Plot>> plots;
-  const bool any = std::any_of(result.samples.begin(), result.samples.end(),
-                               [](const EnsembleSample& sample) { return !sample.refused(); });
-  if (!any) return plots;
-  plots.emplace_back(ensemble_plot_names[0], plot_means(result, shear_modulus, "shear modulus G, Pa"));
-  plots.emplace_back(ensemble_plot_names[1], plot_means(result, poisson_ratio, "Poisson's ratio ν (plane strain)"));
-  Plot scatter = plot_scatter(result);
-  if (!scatter.series.empty()) plots.emplace_back(ensemble_plot_names[2], std::move(scatter));
-  return plots;
-}
+struct EnsemblePlot {
+  const char* name;
+  Plot (*of)(const EnsembleResult& result);
+};
+
+/// Means with their confidence limits and all samples against size, of G and of nu (plane strain); the scatter of K, G
+/// and nu against size, without series where they do not scatter.
+constexpr std::array ensemble_plots{
+    EnsemblePlot{"shear_modulus",
+                 [](const EnsembleResult& r) { return plot_means(r, shear_modulus, "shear modulus G, Pa"); }},
+    EnsemblePlot{
+        "poisson_ratio",
+        [](const EnsembleResult& r) { return plot_means(r, poisson_ratio, "Poisson's ratio ν (plane strain)"); }},
+    EnsemblePlot{"scatter", plot_scatter}};
 
 /// K, G and nu: the others follow from them.
 constexpr std::size_t reported_quantities = 3;
@@ -287,8 +285,8 @@ std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
     return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n",
                               symbol, percent(*result.accuracy));
   }
-  const auto smallest = std::find_if(statistics.sizes.begin(), statistics.sizes.end(),
-                                     [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
+  const auto smallest = std::ranges::find_if(
+      statistics.sizes, [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
   const auto discs = [&](std::int64_t needed) {
     return fmt::format("{} discs{}", needed, static_cast<double>(needed) < smallest->mean_discs + 1 ? " at most" : "");
   };
@@ -333,7 +331,6 @@ void add_sizes(Results& out, const EnsembleStatistics& statistics) {
   out.set("ensemble", sizes);
 }
 
-/// Dependence of a quantity on the size of the cell, and the required size.
 void add_dependence(Results& out, const EnsembleResult& result, std::size_t quantity) {
   const SizeDependence& d = result.statistics.dependence[quantity];
   const std::string key = std::string("/") + quantity_keys[quantity];
@@ -357,9 +354,6 @@ void add_dependence(Results& out, const EnsembleResult& result, std::size_t quan
           Results().set("one_cell", needed(1)).set("mean_of_samples", needed(result.plan.samples)));
 }
 
-/// Keys: ensemble: list of {discs, mean_discs, samples, refused, the quantities of `homogenize`, each {mean,
-/// standard_deviation, standard_error, confidence_interval}}; scatter_exponent, size_limit and needed_discs of each
-/// quantity but the anisotropy; title, confidence, accuracy, refusals.
 Results ensemble_results(const EnsembleResult& result) {
   const EnsembleStatistics& statistics = result.statistics;
   Results out;
@@ -418,13 +412,12 @@ Assembly first_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed
   }
 }
 
-/// The case but for sizes and samples, of which more may be asked later.
+/// The case without sizes and samples, of which more may be asked later.
 std::string continued_part(CommonOptions options, const std::filesystem::path& folder) {
   options.set.emplace_back("ensemble={discs = [3], samples = 2}");
   return to_toml(read_case(options), folder);
 }
 
-/// Samples of an earlier run of the same case.
 /// \param note of the files that the case reads
 std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool resume, const std::string& note) {
   if (!resume) return {};
@@ -450,8 +443,8 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
 std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
                                       const std::vector<EnsembleSample>& kept) {
   std::map<std::pair<std::int64_t, std::uint64_t>, EnsembleSample> all;
-  for (const EnsembleSample& sample : done) all.emplace(std::pair(sample.discs, sample.seed), sample);
-  for (const EnsembleSample& sample : kept) all.emplace(std::pair(sample.discs, sample.seed), sample);
+  for (const auto* samples : {&done, &kept})
+    for (const EnsembleSample& sample : *samples) all.emplace(std::pair(sample.discs, sample.seed), sample);
   std::vector<EnsembleSample> result;
   for (auto& [key, sample] : all) result.push_back(std::move(sample));
   return result;
@@ -497,7 +490,7 @@ Results memory_of_cells(const Case& resolved, const std::vector<EnsembleSetting>
                                       "at the peak, of the cells computed at once", {Shown::bytes});
 }
 
-int dry_run_ensemble(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
+void dry_run_ensemble(const CommonOptions& options, const Case& resolved, const EnsemblePlan& plan, Results results) {
   const BuiltSprings springs = build_springs(resolved, first_cell(resolved, plan.discs.front(), plan.first_seed));
   const int unknowns_per_disc = derive_effects(springs.springs, resolved.rotation).unknowns_per_disc();
   std::vector<std::int64_t> unknowns;
@@ -518,10 +511,8 @@ int dry_run_ensemble(const CommonOptions& options, const Case& resolved, const E
   results.block("nothing was solved (--dry-run)\n");
   results.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
   deliver(options, "dry_run", results, {});
-  return 0;
 }
 
-/// Builds and homogenizes one cell.
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
   const Assembly cell = build_cell(resolved, discs, seed);
   return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));
@@ -546,37 +537,22 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
 }
 
 /// Samples, statistics and plots; the latter where the sampling came to its end.
-struct EnsembleOutput {
-  std::optional<EnsembleResult> result = {};
-  std::function<void()> save_samples = {};  ///< writes the table of the samples
-  std::optional<Error> failure = {};
-  std::vector<std::pair<std::string, Plot>> plots = {};
-
-  [[nodiscard]] bool complete() const { return !failure || failure->kind() != ErrorKind::interrupted; }
-};
-
-std::vector<OutputPart> output_parts(const std::shared_ptr<const EnsembleOutput>& made) {
+std::vector<OutputPart> output_parts(const std::shared_ptr<const EnsembleResult>& made) {
   const auto save = [=](const CommonOptions& /*into*/) { made->save_samples(); };
   const auto write_statistics = [=](const CommonOptions& into) {
-    if (made->complete()) write_csv(*into.out / statistics_name, statistics_table(made->result->statistics), true);
+    if (made->complete()) write_csv(*into.out / statistics_name, statistics_table(made->statistics), true);
   };
   std::vector<OutputPart> parts{{"samples.csv", save, OutputPart::folder, {"samples.csv", "case.toml"}},
                                 {statistics_name, write_statistics, OutputPart::folder, {statistics_name}}};
-  for (const char* name : ensemble_plot_names) {
+  for (const EnsemblePlot& plot : ensemble_plots) {
     const auto draw = [=](const CommonOptions& into) {
-      for (const auto& [own, plot] : made->plots)
-        if (own == name) write_plot(*into.out, own, plot, true);
+      if (!made->complete() || std::ranges::all_of(made->samples, &EnsembleSample::refused)) return;
+      const Plot drawn = plot.of(*made);
+      if (!drawn.series.empty()) write_plot(*into.out, plot.name, drawn, true);
     };
-    parts.push_back({name, draw, OutputPart::page, plot_files(name)});
+    parts.push_back({plot.name, draw, OutputPart::page, plot_files(plot.name)});
   }
   return parts;
-}
-
-void deliver_ensemble(const CommonOptions& options, const std::vector<OutputPart>& parts, EnsembleOutput& made,
-                      Results results, StageTimes times) {
-  if (made.complete()) made.plots = ensemble_plots(*made.result);
-  results.set("complete", made.complete());
-  deliver(options, "done", std::move(results), std::move(times), parts, made.failure);
 }
 
 /// Fewer bodies jam earlier, so that many of their cells could not be packed.
@@ -624,19 +600,19 @@ ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccura
 
 }  // namespace
 
-int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
+void homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
-  const auto made = std::make_shared<EnsembleOutput>();
-  EnsembleResult& result = made->result.emplace(EnsembleResult{
-      .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}});
+  const auto made = std::make_shared<EnsembleResult>(
+      EnsembleResult{.title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy});
+  EnsembleResult& result = *made;
   result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
   Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan));
-  OutputPlan(options).expect_json();
+  expect_json(options);
   if (options.dry_run) return dry_run_ensemble(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
   const std::vector<OutputPart> parts = output_parts(made);
-  OutputPlan(options, resume).expect_results(parts);
+  expect_results(options, parts, resume);
   const auto lock = lock_out(options);
   const std::string note = options.out ? note_of_files(resolved.document) : std::string();
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume, note);
@@ -660,44 +636,42 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
   if (sampled.stopped)
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted)).warn();
-  made->save_samples = [&] { save(result.samples); };
-  made->failure = failure_of([&] {
-    if (sampled.stopped)
-      throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
-                    "Run the same command with --resume to do the rest");
+  result.save_samples = [&] { save(result.samples); };
+  result.failure = failure_of([&] {
+    if (sampled.stopped) throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted));
     if (std::ranges::all_of(result.samples, &EnsembleSample::refused))
       computation_failed("none of the cells has moduli",
                          "the first: " + without_full_stop(result.samples.front().refusal), "");
   });
-  deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
-  return 0;
+  results.set("complete", result.complete());
+  deliver(options, "done", std::move(results), std::move(times), parts, result.failure);
 }
 
-int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
+void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
   if (!resolved.assembly.periodic()) {
     bad_input_at(resolved.where("assembly"), "--accuracy cannot be kept by samples with free boundaries",
                  "their moduli depend on the boundary far more than on the number of samples",
                  fmt::format("Set {}", joins_sides(resolved.assembly)));
   }
-  OutputPlan(options).expect_json();
-  const auto made = std::make_shared<EnsembleOutput>();
+  expect_json(options);
+  const auto made = std::make_shared<EnsembleResult>(EnsembleResult{.title = resolved.title, .accuracy = accuracy});
+  EnsembleResult& result = *made;
   const std::vector<OutputPart> parts = output_parts(made);
-  if (!options.dry_run) OutputPlan(options).expect_results(parts);
+  if (!options.dry_run) expect_results(options, parts);
   const auto lock = lock_out(options);
   EnsembleAccuracy wanted{.accuracy = accuracy, .first_seed = resolved.assembly.seed()};
   if (resolved.assembly.packing) wanted.smallest = smallest_packing;
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   if (options.dry_run) {
-    std::vector<std::string> pilots;
-    for (const EnsembleSetting& pilot : accuracy_pilots(wanted))
-      pilots.push_back(fmt::format("{} cells of {} discs", pilot.samples, pilot.discs));
+    const auto pilots = accuracy_pilots(wanted);
+    const auto described = [](const EnsembleSetting& pilot) {
+      return fmt::format("{} cells of {} discs", pilot.samples, pilot.discs);
+    };
     results.append(accuracy_plan(accuracy, fmt::format("first {}; the size and number of cells that reach it follow "
                                                        "from them, with at most {:.0e} discs in all",
-                                                       joined(pilots, " and "), wanted.most_discs)));
-    const auto pilot_cells = accuracy_pilots(wanted);
-    results.append(memory_of_cells(resolved, {pilot_cells.begin(), pilot_cells.end()}, wanted.first_seed));
-    deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
-    return 0;
+                                                       joined(pilots, described, " and "), wanted.most_discs)));
+    results.append(memory_of_cells(resolved, {pilots.begin(), pilots.end()}, wanted.first_seed));
+    return deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
   }
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {
@@ -710,18 +684,16 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
       sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
                          wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
-  made->failure = sampled.failure;
+  result.failure = sampled.failure;
   if (sampled.stopped)
-    made->failure = Error(
+    result.failure = Error(
         ErrorKind::interrupted, "stopped as asked",
         fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
   const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
-  const EnsembleResult& result = made->result.emplace(EnsembleResult{.title = resolved.title,
-                                                                     .plan = sampled.plan,
-                                                                     .accuracy = accuracy,
-                                                                     .samples = std::move(sampled.samples),
-                                                                     .statistics = std::move(sampled.statistics)});
-  made->save_samples = [&] { save(result.samples); };
+  result.plan = sampled.plan;
+  result.samples = std::move(sampled.samples);
+  result.statistics = std::move(sampled.statistics);
+  result.save_samples = [&] { save(result.samples); };
   if (folder) {
     CommonOptions chosen = options;
     chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}}}", sampled.chosen.discs,
@@ -729,9 +701,9 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
     write_case(options, read_case(chosen), note_of_files(resolved.document));
   }
   results.append(ensemble_results(result));
-  if (sampled.estimated > 0 || !made->failure) results.append(accuracy_results(reached));
-  deliver_ensemble(options, parts, *made, std::move(results), std::move(times));
-  return 0;
+  if (sampled.estimated > 0 || !result.failure) results.append(accuracy_results(reached));
+  results.set("complete", result.complete());
+  deliver(options, "done", std::move(results), std::move(times), parts, result.failure);
 }
 
 }  // namespace equidem

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -20,19 +19,15 @@
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
-#include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "accuracy.hpp"
-#include "homogenize/ensemble.hpp"
-#include "homogenize/spring_effects.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
 
-/// Names of the table and of the plot.
 constexpr const char* viscoelastic_table_name = "viscoelastic.csv";
 constexpr const char* moduli_over_frequency = "moduli_over_frequency";
 
@@ -81,8 +76,6 @@ Results frequency_row(const HarmonicStiffness& one) {
   return row;
 }
 
-/// The JSON has viscoelastic: {normal, tangential, solver, factor_bytes, harmonic: [{frequency, moduli as {storage,
-/// loss}, ...}, ...]}.
 Results viscoelastic_results(const Viscoelasticity& springs, const ViscoelasticStiffness& result) {
   Results out;
   out.block(
@@ -109,7 +102,6 @@ Results viscoelastic_results(const Viscoelasticity& springs, const ViscoelasticS
   return out;
 }
 
-/// One row for each frequency.
 Table viscoelastic_table(const ViscoelasticStiffness& result) {
   Table table;
   const auto& rows = result.harmonic;
@@ -253,9 +245,9 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
       .set("mechanisms", described)
       .set("gear_modes", r.gear_modes)
       .set("local_mechanisms", r.mechanisms)
-      .set("self_stresses", known(r.self_stresses))
-      .set("negative_pivots", known(r.negative_pivots))
-      .set("unstable_modes", known(r.unstable_modes))
+      .set("self_stresses", r.self_stresses)
+      .set("negative_pivots", r.negative_pivots)
+      .set("unstable_modes", r.unstable_modes)
       .set("unstable_strains", r.unstable_strains);
 }
 
@@ -369,7 +361,6 @@ void add_order(Results& out, const BoundedStiffness& h, const ContactSprings& sp
   out.set("order", steps);
 }
 
-/// Name of a bound or an estimate in the table.
 std::string name_of(const std::string& key) {
   return key == "voigt"                     ? "Voigt: all discs follow the strain"
          : key == "uniform_stress_estimate" ? "uniform stress: an estimate, no bound"
@@ -405,11 +396,6 @@ void add_bounds(Results& out, const BoundedStiffness& h, const std::optional<Rel
     if (!one.stiffness) out.line(name_of(one.key).substr(0, name_of(one.key).find(':')), "none: " + one.missing);
   out.set("bounds", bounds);
   if (!missing.parts().empty()) out.set("bounds_missing", missing);
-}
-
-void add_relation(Results& out, const RelationBeside& relation) {
-  const Matrix3 stiffness = isotropic_stiffness(relation.bulk_modulus_2d, relation.shear_modulus);
-  out.set("relation", Results().set("name", relation.name).append(moduli_results(effective_moduli(stiffness))));
 }
 
 void add_restrained(Results& out, const EffectiveStiffness& r) {
@@ -456,7 +442,10 @@ Results homogenized_results(const Problem& problem, Results out, bool periodic, 
   if (fabric) add_fabric(out, *fabric);
   add_bounds(out, h, relation);
   add_order(out, h, problem.springs.springs);
-  if (relation) add_relation(out, *relation);
+  if (relation) {
+    const Matrix3 stiffness = isotropic_stiffness(relation->bulk_modulus_2d, relation->shear_modulus);
+    out.set("relation", Results().set("name", relation->name).append(moduli_results(effective_moduli(stiffness))));
+  }
   if (r.effects.restrained && r.boundary != Boundary::traction) add_restrained(out, r);
   out.set("stress_asymmetry", r.stress_asymmetry);
   out.block("\n").line("unknowns").add("unknowns", "", r.unknowns, "", {Shown::count});
@@ -486,11 +475,6 @@ BoundsOptions bounds_options(const Case& resolved) {
   options.rotation = resolved.rotation;
   options.solver = resolved.solver;
   return options;
-}
-
-std::optional<RelationBeside> relation_of(const Problem& problem) {
-  if (!problem.springs.constants) return {};
-  return relation_beside(*problem.springs.constants, spring_relation(problem.resolved, problem.assembly));
 }
 
 /// \param failure set where the bounds are not finished
@@ -547,7 +531,6 @@ struct Harmonic {
   ViscoelasticStiffness stiffness;
 };
 
-/// What the verb finds.
 struct Homogenized {
   std::optional<Problem> problem = {};
   BoundedStiffness stiffness = {};
@@ -570,15 +553,10 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
   }
   if (sensitivities) {
     const auto write = [=](const CommonOptions& into) {
-      if (!found->sensitivities) return;
-      const Matrix3& stiffness = found->stiffness.result.stiffness;
-      if (!into.pictures_only)
-        write_csv(*into.out / sensitivities_name, sensitivity_table(*found->problem, stiffness, *found->sensitivities),
-                  true);
-      draw_sensitivities(into, *found->problem, stiffness, *found->sensitivities);
+      if (found->sensitivities)
+        write_sensitivities(into, *found->problem, found->stiffness.result.stiffness, *found->sensitivities);
     };
-    parts.push_back({sensitivities_name, write, OutputPart::page, sensitivity_pictures(resolved.output)});
-    parts.back().files.insert(parts.back().files.begin(), sensitivities_name);
+    parts.push_back({sensitivities_name, write, OutputPart::page, files_of_sensitivities(resolved.output)});
   }
   parts.push_back(assembly_part(resolved.output, [=]() -> const Assembly& { return found->problem->assembly; }));
   const auto write_all = [=](const CommonOptions& into) {
@@ -636,7 +614,7 @@ double bytes_of_sensitivities(const Problem& problem) {
   return kinds * sizeof(Matrix3) * static_cast<double>(assembly.contacts.size()) / static_cast<double>(assembly.size());
 }
 
-int dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem) {
+void dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem) {
   const std::optional<double>& accuracy = options.accuracy;
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
@@ -654,14 +632,14 @@ int dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem
     add_solver_of_complex(results, problem.resolved.solver);
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
-  return dry_run(options, problem, results, AssemblyKeys::all,
-                 {.of_complex = problem.resolved.viscoelastic.has_value(),
-                  .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
-                                   (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
-                  .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
+  dry_run(options, problem, results, AssemblyKeys::all,
+          {.of_complex = problem.resolved.viscoelastic.has_value(),
+           .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
+                            (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
+           .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
-int homogenize(const HomogenizeVerb& options) {
+void homogenize(const HomogenizeVerb& options) {
   Case resolved = read_case(options);
   refuse_viscoelastic_samples(resolved, options.accuracy.has_value());
   if (options.sensitivities && (resolved.ensemble || (options.accuracy && resolved.assembly.random())))
@@ -678,7 +656,7 @@ int homogenize(const HomogenizeVerb& options) {
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
   const auto found = std::make_shared<Homogenized>();
   const std::vector<OutputPart> parts = output_parts(resolved, found, options.sensitivities);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
   const Problem& problem = found->problem.emplace(prestressed(problem_of(std::move(resolved))));
@@ -697,8 +675,11 @@ int homogenize(const HomogenizeVerb& options) {
   times.add(result.times);
   if (harmonic) times.add(harmonic->stiffness.times);
   if (found->sensitivities) times.add("sensitivities", seconds_of_sensitivities);
+  std::optional<RelationBeside> relation;
+  if (const auto& constants = problem.springs.constants)
+    relation = relation_beside(*constants, spring_relation(problem.resolved, problem.assembly));
   Results results = homogenized_results(problem, problem_results(problem, result.effects), problem.assembly.periodic(),
-                                        found->stiffness, fabric(problem.assembly), relation_of(problem));
+                                        found->stiffness, fabric(problem.assembly), relation);
   if (found->sensitivities) results.append(spring_effects(problem, result.stiffness, *found->sensitivities));
   results.set("strain_of_states", written_strain);
   if (options.accuracy)
@@ -724,7 +705,6 @@ int homogenize(const HomogenizeVerb& options) {
       hand_over(shape_arrays(shape_sensitivities(problem.assembly, springs, result)));
   }
   hand_over(std::shared_ptr<const Assembly>(found, &problem.assembly));
-  return 0;
 }
 
 }  // namespace

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Report and JSON of `equidem homogenize`.
+/// Report and JSON of `equidem homogenize`; with [ensemble] the moduli of many random cells, their scatter, and the
+/// size that they need; with --sensitivities what springs do to the moduli.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "equidem/contact/contact_springs.hpp"
 #include "equidem/homogenize/bounds.hpp"
-#include "equidem/output/results.hpp"
+#include "equidem/homogenize/sensitivities.hpp"
+#include "equidem/output/files/csv.hpp"
 
+#include "command.hpp"
 #include "problem.hpp"
 
 namespace equidem {
@@ -27,5 +31,33 @@ Results homogenized_results(const Problem& problem, Results of_problem, bool per
                             const std::optional<RelationBeside>& relation);
 /// Moduli by the relation of Abe (1996), where the springs stand for an isotropic continuum.
 std::optional<RelationBeside> relation_beside(const SpringConstants& springs, const ChosenRelation& chosen);
+
+/// Samples the cells of [ensemble] and delivers report, tables, plots and JSON.
+/// \param resume keep the samples that lie in --out (option --resume of the verb), compute the others
+/// \throws Error (bad_input) where the case has no periodic cell, or the samples in --out are of another case;
+///         (computation_failed) where every sample is refused; (interrupted), with what is done kept in --out
+void homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume = false);
+
+/// Random cells in the number and size that the accuracy requires, regardless of the sizes and numbers in the case; the
+/// case that is written names those that were chosen.
+/// \throws Error (bad_input) where the case has no periodic cells; (computation_failed) where the accuracy is beyond
+///         all means; (interrupted)
+void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
+
+inline constexpr const char* sensitivities_name = "sensitivities.csv";
+
+/// Returns the part of the report and of the JSON.
+Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
+
+/// A table with a row for each contact: contact, i, j, kN_Pa, kT_Pa, [kM_N,] and of each spring the derivatives of K,
+/// G, E and nu (plane stress); pictures of what the springs do to E, G and nu, where [output] asks for some.
+std::vector<std::string> files_of_sensitivities(const OutputCase& wanted);
+void write_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
+                         const SpringSensitivities& found);
+
+/// dC_dkN, dC_dkT and, where contacts bend, dC_dkM, in 1/m²: (contacts, 3, 3).
+std::vector<ResultArray> sensitivity_arrays(const std::shared_ptr<const SpringSensitivities>& found);
+/// dC_dx, dC_dy and, where contact points follow the radii, dC_dradius: (discs, 3, 3) in Pa/m.
+std::vector<ResultArray> shape_arrays(const ShapeSensitivities& found);
 
 }  // namespace equidem

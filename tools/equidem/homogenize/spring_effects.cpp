@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "homogenize/spring_effects.hpp"
-
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "equidem/core/text.hpp"
 
+#include "homogenize/homogenize.hpp"
 #include "state_files.hpp"
 
 namespace equidem {
 namespace {
 
-/// The springs of a contact.
 struct SpringKind {
   const char* name;
   const char* unit;  ///< in the names of columns
@@ -115,6 +113,8 @@ Results spring_effects(const Problem& problem, const Matrix3& stiffness, const S
   return out.set("sensitivities", of_kinds);
 }
 
+namespace {
+
 Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found) {
   const std::vector<Contact>& contacts = problem.assembly.contacts;
   const ContactSprings& springs = problem.springs.springs;
@@ -140,8 +140,6 @@ Table sensitivity_table(const Problem& problem, const Matrix3& stiffness, const 
   return table;
 }
 
-namespace {
-
 /// A picture: the change of a modulus by all springs of a contact, of E and G relative.
 struct EffectPicture {
   const char* suffix;
@@ -161,15 +159,17 @@ constexpr std::array effect_pictures{
 
 }  // namespace
 
-std::vector<std::string> sensitivity_pictures(const OutputCase& wanted) {
-  std::vector<std::string> names;
+std::vector<std::string> files_of_sensitivities(const OutputCase& wanted) {
+  std::vector<std::string> names{sensitivities_name};
   for (const EffectPicture& picture : effect_pictures)
     for (const std::string& name : state_names(pictures_of(wanted), picture.suffix)) names.push_back(name);
   return names;
 }
 
-void draw_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
-                        const SpringSensitivities& found) {
+void write_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
+                         const SpringSensitivities& found) {
+  if (!options.pictures_only)
+    write_csv(*options.out / sensitivities_name, sensitivity_table(problem, stiffness, found), true);
   const ContactSprings& springs = problem.springs.springs;
   const EffectiveModuli moduli = effective_moduli(stiffness);
   for (const EffectPicture& picture : effect_pictures) {

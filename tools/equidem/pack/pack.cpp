@@ -234,65 +234,64 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   return out.line("work").add("work", "", packing.work, entry_of(options.method).unit_of_work);
 }
 
-void draw(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
+struct Packed {
+  PackCase resolved;
+  GrainPacking packing = {};
+  Assembly network = {};
+  double density = 0;  ///< kg/m³, of the bodies
+};
+
+void draw(const CommonOptions& into, const Packed& packed) {
+  const auto& [resolved, packing, network, density] = packed;
   if (!resolved.picture) return;
   const std::vector<Wall> walls = walls_of(packing.box);
-  write_grain_picture(*common.out, "picture",
+  write_grain_picture(*into.out, "picture",
                       {.title = resolved.title,
                        .time = packing.settling.time,
                        .grains = packing.grains,
                        .clumps = packing.clumps,
                        .bonds = packing.bonds,
                        .walls = walls},
-                      common.overwrite);
+                      into.overwrite);
 }
 
-/// \param density kg/m³, of the bodies; not written where the case leaves it open
-void write_tables(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing, double density) {
+/// The density is not written where the case leaves it open.
+void write_tables(const CommonOptions& into, const Packed& packed) {
+  const auto& [resolved, packing, network, density] = packed;
   if (!resolved.csv) return;
-  const auto& folder = *common.out;
+  const auto& folder = *into.out;
   const std::vector<std::string> groups(packing.grains.size(), "grains");
   const std::vector<double> densities(resolved.has_density() ? packing.grains.size() : 0, density);
   const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
-  write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period}, common.overwrite);
-  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
+  write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period}, into.overwrite);
+  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, into.overwrite);
 }
 
-void write_assemblies(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
-                      const Assembly& network) {
-  const auto place = [&](const char* stem) { return *common.out / assembly_file_name(stem, resolved.assembly); };
-  write_assembly(place("assembly"), network, common.overwrite);
+void write_assemblies(const CommonOptions& into, const Packed& packed) {
+  const auto& [resolved, packing, network, density] = packed;
+  const auto place = [&](const char* stem) { return *into.out / assembly_file_name(stem, resolved.assembly); };
+  write_assembly(place("assembly"), network, into.overwrite);
   if (!packing.box.periodic()) {
     const HeldNetwork held = held_network_of(packing, resolved.network);
-    if (!held.bodies.empty()) write_assembly(place("assembly_with_walls"), held.assembly, common.overwrite);
+    if (!held.bodies.empty()) write_assembly(place("assembly_with_walls"), held.assembly, into.overwrite);
   }
 }
 
-/// A packing with its network.
-struct Packed {
-  GrainPacking packing = {};
-  Assembly network = {};
-  double density = 0;  ///< kg/m³, of the bodies
-};
-
-std::vector<OutputPart> output_parts(const std::shared_ptr<const PackCase>& resolved,
-                                     const std::shared_ptr<const Packed>& packed) {
-  std::vector<std::string> tables, assemblies{assembly_file_name("assembly", resolved->assembly)}, pictures;
-  if (!resolved->packing.box.periodic())
-    assemblies.push_back(assembly_file_name("assembly_with_walls", resolved->assembly));
-  if (resolved->csv) tables.emplace_back("grains.csv");
-  if (resolved->csv && resolved->packing.shape.kind == PackingShape::Kind::bonded_pair)
-    tables.emplace_back("bonds.csv");
-  if (resolved->picture) pictures.emplace_back("picture.png");
-  return {case_part([=]() -> const TomlValue& { return resolved->document; }),
-          {"the tables",
-           [=](const CommonOptions& into) { write_tables(into, *resolved, packed->packing, packed->density); },
-           OutputPart::folder, tables},
-          {"the assembly",
-           [=](const CommonOptions& into) { write_assemblies(into, *resolved, packed->packing, packed->network); },
-           OutputPart::folder, assemblies},
-          {"the picture", [=](const CommonOptions& into) { draw(into, *resolved, packed->packing); }, OutputPart::page,
-           pictures}};
+std::vector<OutputPart> output_parts(const std::shared_ptr<const Packed>& packed) {
+  const PackCase& resolved = packed->resolved;
+  std::vector<std::string> tables, assemblies{assembly_file_name("assembly", resolved.assembly)}, pictures;
+  if (!resolved.packing.box.periodic())
+    assemblies.push_back(assembly_file_name("assembly_with_walls", resolved.assembly));
+  if (resolved.csv) tables.emplace_back("grains.csv");
+  if (resolved.csv && resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) tables.emplace_back("bonds.csv");
+  if (resolved.picture) pictures.emplace_back("picture.png");
+  const auto part = [&](const char* name, auto write, OutputPart::Place place, const std::vector<std::string>& files) {
+    return OutputPart{name, [=](const CommonOptions& into) { write(into, *packed); }, place, files};
+  };
+  return {case_part([=]() -> const TomlValue& { return packed->resolved.document; }),
+          part("the tables", write_tables, OutputPart::folder, tables),
+          part("the assembly", write_assemblies, OutputPart::folder, assemblies),
+          part("the picture", draw, OutputPart::page, pictures)};
 }
 
 /// Adds the line of the key at fault to the errors of a task. \param usual the key of an error that names none
@@ -313,13 +312,12 @@ PackingMeasures measured(const PackCase& resolved, GrainPacking& packing) {
   }
 }
 
-int run(const CommonOptions& common) {
+void run(const CommonOptions& common) {
   prepare(common);
-  const auto shared_case = std::make_shared<const PackCase>(read_pack_case(common.case_file, overrides_of(common)));
-  const PackCase& resolved = *shared_case;
-  const auto packed = std::make_shared<Packed>();
-  const std::vector<OutputPart> parts = output_parts(shared_case, packed);
-  OutputPlan(common).expect_results(parts);
+  const auto packed = std::make_shared<Packed>(Packed{read_pack_case(common.case_file, overrides_of(common))});
+  const PackCase& resolved = packed->resolved;
+  const std::vector<OutputPart> parts = output_parts(packed);
+  expect_results(common, parts);
   located(resolved, "method", [&] { check(resolved.packing); });
   if (resolved.region) located(resolved, "region", [&] { check_region(resolved.packing.box, *resolved.region); });
   const double bodies = static_cast<double>(resolved.packing.radii.size()), resident = resident_memory();
@@ -328,8 +326,7 @@ int run(const CommonOptions& common) {
     const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
     Results out = pack_case_results(resolved).set("grains", resolved.packing.radii.size());
     out.line("memory").add("peak_bytes", "about", resident + needed, "at the peak", {Shown::bytes});
-    deliver(common, "dry_run", out.append(estimate), {});
-    return 0;
+    return deliver(common, "dry_run", out.append(estimate), {});
   }
   require_memory(needed, "packing needs about", "Pack fewer bodies, or take a machine with more memory");
   const auto lock = lock_out(common);
@@ -348,7 +345,6 @@ int run(const CommonOptions& common) {
   deliver(common, "done", packing_results(resolved, packing, network, density, measures), std::move(times), parts,
           failure);
   if (arrays_wanted()) hand_over(std::make_shared<const Assembly>(with_cells(network)));
-  return 0;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <new>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +22,7 @@
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/solver_choice.hpp"
 
+#include "case_text.hpp"
 #include "command.hpp"
 #include "problem.hpp"
 #include "quasistatic/quasistatic_files.hpp"
@@ -32,8 +32,7 @@
 namespace equidem {
 namespace {
 
-struct QuasistaticOptions {
-  CommonOptions common;
+struct QuasistaticOptions : CommonOptions {
   bool resume = false;
 };
 
@@ -47,6 +46,10 @@ Problem build(Case resolved) {
                  "Keep one; loads that stay are [[dead_load]]");
   }
   return problem;
+}
+
+bool is_frictional(const Case& resolved) {
+  return resolved.strength && resolved.strength->after_breaking == AfterBreaking::frictional;
 }
 
 /// Everything that a path refers to.
@@ -66,7 +69,7 @@ struct Sequence {
     const Case& resolved = problem.resolved;
     const Assembly& assembly = problem.assembly;
     const ContactSprings& springs = problem.springs.springs;
-    effects = derive_effects(assembly, springs, resolved.rotation);
+    effects = problem.effects();
     strengths = with_place(resolved.where("strength"),
                            [&] { return contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{})); });
     cut = with_place(resolved.where("notch"), [&] { return contacts_across(assembly, resolved.notches); });
@@ -128,10 +131,7 @@ struct Sequence {
     return solver;
   }
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
-  [[nodiscard]] bool frictional() const {
-    const auto& strength = problem.resolved.strength;
-    return strength && strength->after_breaking == AfterBreaking::frictional;
-  }
+  [[nodiscard]] bool frictional() const { return is_frictional(problem.resolved); }
   /// mu of contacts without a bond; none: they are not frictional.
   [[nodiscard]] std::optional<double> residual_friction() const {
     if (!frictional()) return {};
@@ -239,7 +239,7 @@ void add_peak(Results& out, const BreakageScene& scene, const EventPath& run) {
     add(*point);
     const auto leg = point - points.begin() - 1;
     out.note(leg < 0 ? ", at the start" : fmt::format(", at the end of leg {}", leg)).set("peak/event", nullptr);
-    out.set("peak/stress", point->stress ? ResultValue(*point->stress) : ResultValue(nullptr));
+    out.set("peak/stress", point->stress);
   }
 }
 
@@ -265,9 +265,8 @@ void add_energies(Results& out, const EventPath& run) {
 
 void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run) {
   constexpr int most = 5;
-  if (!run.idle().empty()) {
+  if (!run.idle().empty())
     out.line("idle", fmt::format("{} from the start, which can carry no load", named(scene.assembly, run.idle())));
-  }
   std::int64_t loosened = 0, events = 0;
   for (std::size_t k = 0; k < run.events().size(); ++k) {
     const std::vector<std::int32_t>& discs = run.events()[k].loosened;
@@ -282,14 +281,15 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
 
 /// Rattlers between frictional contacts: these may close again.
 void add_let_go(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
-  const std::vector<std::int32_t>& at_first = run.idle();
-  const auto without = [](const std::vector<std::int32_t>& discs, const std::vector<std::int32_t>& others) {
-    std::vector<std::int32_t> left;
+  using Discs = std::vector<std::int32_t>;
+  const Discs& at_first = run.idle();
+  const auto without = [](const Discs& discs, const Discs& others) {
+    Discs left;
     std::ranges::set_difference(discs, others, std::back_inserter(left));
     return left;
   };
-  const std::vector<std::int32_t> untouched = run.untouched(), now = without(untouched, at_first),
-                                  on_contacts = without(without(run.loose(), untouched), at_first);
+  const Discs untouched = run.untouched(), now = without(untouched, at_first),
+              on_contacts = without(without(run.loose(), untouched), at_first);
   if (!at_first.empty()) out.line("idle", fmt::format("{}: nothing touched at first", named(scene.assembly, at_first)));
   if (!now.empty()) out.line("came loose", fmt::format("{}: nothing touched at the end", named(scene.assembly, now)));
   if (!on_contacts.empty()) {
@@ -325,8 +325,8 @@ void add_solver(Results& out, const EventPath& run) {
 }
 
 Results of_event(const BreakEvent& event, DrivenBy driven_by) {
-  Results one;
-  one.set("lambda", event.lambda)
+  return Results()
+      .set("lambda", event.lambda)
       .set("contact", event.contact)
       .set("mode", to_string(event.mode))
       .set("stress", std::vector<double>{event.stress.xx, event.stress.yx, event.stress.xy, event.stress.yy}, "Pa",
@@ -337,12 +337,11 @@ Results of_event(const BreakEvent& event, DrivenBy driven_by) {
       .set("energy_before", event.energy_before)
       .set("energy_after", event.energy_after)
       .set("energy_released", event.energy_released)
-      .set("unstable_modes", known(event.unstable_modes))
+      .set("unstable_modes", event.unstable_modes)
       .set("relative_residual", event.relative_residual)
       .set("ties", event.ties)
       .set("gap", event.gap)
       .set("loosened", std::vector<std::int64_t>(event.loosened.begin(), event.loosened.end()));
-  return one;
 }
 
 Results curve_results(const LoadCurve& curve, DrivenBy driven_by) {
@@ -361,7 +360,6 @@ void add_events_and_curves(Results& out, const BreakageScene& scene, const Event
   out.append(curve_results(motion_envelope(run), driven_by).under("motion_envelope"));
 }
 
-/// Strengths, path and control.
 Results path_results(const Sequence& sequence) {
   Results out;
   const BreakageScene scene = sequence.scene();
@@ -389,7 +387,6 @@ Results path_results(const Sequence& sequence) {
   return out.set("control", to_string(path.control));
 }
 
-/// Events, avalanches, energies, what comes loose, stability, residual.
 Results quasistatic_results(const Sequence& sequence) {
   const BreakageScene scene = sequence.scene();
   const EventPath& run = sequence.run();
@@ -417,47 +414,33 @@ Results quasistatic_results(const Sequence& sequence) {
 }
 
 /// Size and memory of a path: how many events follow is not known before.
-int dry_run_path(const CommonOptions& options, Sequence& sequence) {
+void dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
-  return dry_run(options, problem, path_results(sequence), AssemblyKeys::all, {.bytes_of_picture = picture});
+  dry_run(options, problem, path_results(sequence), AssemblyKeys::all, {.bytes_of_picture = picture});
 }
 
 /// Whether the table of events does not hold all that is needed to go on from it: forces of frictional contacts depend
 /// on the path, and frames are written of states on it.
 bool keeps_state(const Case& resolved) {
-  const bool frictional = resolved.strength && resolved.strength->after_breaking == AfterBreaking::frictional;
-  return frictional || resolved.quasistatic.frame_every != 0;
+  return is_frictional(resolved) || resolved.quasistatic.frame_every != 0;
+}
+
+std::string checkpoint_text(const CommonOptions& options, const Sequence& sequence) {
+  return to_toml(deciding_tables(sequence.problem.resolved.document, Decided::path), *options.out);
 }
 
 /// The path so far, written whole or not at all.
-class PathCheckpoint {
- public:
-  PathCheckpoint(const CommonOptions& options, const Sequence& sequence)
-      : path_(*options.out / path_checkpoint_name),
-        case_text_(deciding_keys_of_path(sequence.problem.resolved, *options.out)) {}
-
-  void write(const Sequence& sequence, EventFrames* frames) const {
-    Checkpoint checkpoint;
-    checkpoint.state.step = std::ssize(sequence.run().events());
-    PathNumbers numbers;
-    if (sequence.unbonded) sequence.unbonded->pass(numbers);
-    checkpoint.state.arrays.push_back({.name = "path", .columns = 1, .values = numbers.numbers()});
-    if (frames != nullptr) checkpoint.files.push_back(frames->kept());
-    CheckpointWriter(path_, case_text_, true).write(checkpoint);
-  }
-  /// \return none where no state was kept
-  [[nodiscard]] std::optional<Checkpoint> read() const {
-    if (!std::filesystem::exists(path_)) return {};
-    return read_checkpoint(path_, case_text_);
-  }
-  void remove() const { std::filesystem::remove(path_); }
-
- private:
-  std::filesystem::path path_;
-  std::string case_text_;
-};
+void write_path_checkpoint(const CommonOptions& options, const Sequence& sequence, std::optional<EventFrames>& frames) {
+  Checkpoint checkpoint;
+  checkpoint.state.step = std::ssize(sequence.run().events());
+  PathNumbers numbers;
+  if (sequence.unbonded) sequence.unbonded->pass(numbers);
+  checkpoint.state.arrays.push_back({.name = "path", .columns = 1, .values = numbers.numbers()});
+  if (frames) checkpoint.files.push_back(frames->kept());
+  CheckpointWriter(*options.out / path_checkpoint_name, checkpoint_text(options, sequence), true).write(checkpoint);
+}
 
 /// Goes on with an earlier computation of the same case.
 /// \param note of the files that the case reads
@@ -473,7 +456,9 @@ std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence,
   const std::int64_t found = std::ssize(stored.events);
   check_most_events(before, sequence.problem.resolved, found);
   std::optional<Checkpoint> kept;
-  if (keeps_state(sequence.problem.resolved)) kept = PathCheckpoint(options, sequence).read();
+  if (const auto path = *options.out / path_checkpoint_name;
+      keeps_state(sequence.problem.resolved) && std::filesystem::exists(path))
+    kept = read_checkpoint(path, checkpoint_text(options, sequence));
   if (kept) {
     if (sequence.unbonded) {
       PathNumbers numbers(kept->state["path"]);
@@ -515,12 +500,11 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   std::optional<EventFrames> frames;
   if (options.out && wanted.frame_every > 0) frames.emplace(options, sequence.scene(), wanted.frame_every, from, run);
-  std::optional<PathCheckpoint> checkpoint;
-  if (options.out && keeps_state(sequence.problem.resolved)) checkpoint.emplace(options, sequence);
   bool between = true;  // two calls of advance()
   const auto save = [&] {
     if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
-    if (checkpoint && between) checkpoint->write(sequence, frames ? &*frames : nullptr);
+    if (options.out && between && keeps_state(sequence.problem.resolved))
+      write_path_checkpoint(options, sequence, frames);
   };
   SavedOnTheWay saved_on_the_way(options);
   const Stopwatch watch;
@@ -566,7 +550,6 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
   return stop;
 }
 
-/// A path, and how it was left.
 struct ComputedPath {
   std::string note{};  ///< of the files that the case reads
   std::optional<Sequence> sequence{};
@@ -594,25 +577,24 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
           {"the figures", draw, OutputPart::page, names_of_figures(wanted)}};
 }
 
-int quasistatic(const QuasistaticOptions& given) {
-  CommonOptions options = given.common;
-  if (given.resume && !options.out)
+void quasistatic(QuasistaticOptions options) {
+  if (options.resume && !options.out)
     bad_input("--resume has nothing to go on from", "the events lie in the folder of --out", "Add --out DIR");
   const Case resolved = read_case(options);
-  if (given.resume) options.overwrite = true;
+  if (options.resume) options.overwrite = true;
   const auto path = std::make_shared<ComputedPath>();
   if (options.out) path->note = note_of_files(resolved.document);
   const std::vector<OutputPart> parts = output_parts(resolved, path);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   Sequence& sequence = path->sequence.emplace(build(resolved));
   if (options.dry_run) return dry_run_path(options, sequence);
   sequence.begin();
   std::optional<FileMark> frames;
-  if (given.resume) {
+  if (options.resume) {
     frames = resume(options, sequence, path->note);
   } else if (options.out && keeps_state(resolved)) {
-    PathCheckpoint(options, sequence).remove();
+    std::filesystem::remove(*options.out / path_checkpoint_name);
   }
   write_case(options, sequence.problem.resolved, path->note);
   const Stop& stop = path->stop = go(options, sequence, frames);
@@ -631,14 +613,13 @@ int quasistatic(const QuasistaticOptions& given) {
                   "Run the same command with --resume to go on");
   }
   hand_over(std::shared_ptr<const Assembly>(path, &sequence.problem.assembly));
-  return 0;
 }
 
 }  // namespace
 
 Run declare_quasistatic(CLI::App& command) {
   const auto options = std::make_shared<QuasistaticOptions>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command.add_flag("--resume", options->resume, "go on behind the events that lie in --out");
   return [options] { return quasistatic(*options); };
 }

@@ -2,10 +2,7 @@
 #include "quasistatic/quasistatic_files.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <optional>
-#include <system_error>
 #include <utility>
 
 #include "equidem/breakage/avalanches.hpp"
@@ -40,12 +37,8 @@ std::vector<std::int32_t> discs_of(const StoredTable& table, std::size_t row, st
   return discs;
 }
 
-/// A member of an event that is a number, and its column.
-struct Number {
-  std::string name;
-  double BreakEvent::*member;
-};
-
+/// Members of an event, and their columns.
+using Number = std::pair<std::string, double BreakEvent::*>;
 std::vector<Number> numbers(DrivenBy driven_by) {
   const bool strain = driven_by == DrivenBy::strain;
   const std::string load = strain ? "load_Pa" : "load_N_per_m", motion = strain ? "motion" : "motion_m";
@@ -62,23 +55,13 @@ std::vector<Number> numbers(DrivenBy driven_by) {
           {"relative_residual", &BreakEvent::relative_residual}};
 }
 
-struct Count {
-  std::string name;
-  std::int64_t BreakEvent::*member;
-};
-
-const std::vector<Count> count_columns = {
+constexpr std::pair<const char*, std::int64_t BreakEvent::*> count_columns[] = {
     {"leg", &BreakEvent::leg}, {"contact", &BreakEvent::contact}, {"ties", &BreakEvent::ties}};
 
-struct StressColumn {
-  std::string name;
-  double Tensor2::*member;
-};
-
-const std::vector<StressColumn> stress_columns = {{"stress_xx_Pa", &Tensor2::xx},
-                                                  {"stress_yx_Pa", &Tensor2::yx},
-                                                  {"stress_xy_Pa", &Tensor2::xy},
-                                                  {"stress_yy_Pa", &Tensor2::yy}};
+constexpr std::pair<const char*, double Tensor2::*> stress_columns[] = {{"stress_xx_Pa", &Tensor2::xx},
+                                                                        {"stress_yx_Pa", &Tensor2::yx},
+                                                                        {"stress_xy_Pa", &Tensor2::xy},
+                                                                        {"stress_yy_Pa", &Tensor2::yy}};
 
 }  // namespace
 
@@ -96,21 +79,20 @@ Table event_table(const EventPath& run, const BreakageScene& scene) {
   std::vector<std::int64_t> number;
   for (std::int64_t k = 0; k < std::ssize(events); ++k) number.push_back(k);
   table.add("event", std::move(number));
-  for (const Count& count : count_columns) table.add(count.name, events, count.member);
+  for (const auto& [name, member] : count_columns) table.add(name, events, member);
   table.add("unstable_modes", events, [](const BreakEvent& event) { return event.unstable_modes.value_or(-1); });
   const auto& contacts = scene.assembly.contacts;
   const auto contact = [&](const BreakEvent& event) { return contacts[static_cast<std::size_t>(event.contact)]; };
   table.add("i", events, [&](const BreakEvent& event) { return contact(event).i; });
   table.add("j", events, [&](const BreakEvent& event) { return contact(event).j; });
   table.add("mode", events, [](const BreakEvent& event) { return to_string(event.mode); });
-  for (const Number& n : numbers(scene.path.driven_by)) table.add(n.name, events, n.member);
-  for (const StressColumn& c : stress_columns)
-    table.add(c.name, events, [&](const BreakEvent& event) { return event.stress.*c.member; });
+  for (const auto& [name, member] : numbers(scene.path.driven_by)) table.add(name, events, member);
+  for (const auto& column : stress_columns)
+    table.add(column.first, events, [&](const BreakEvent& event) { return event.stress.*column.second; });
   table.add("avalanche_of_load", avalanches_by(run, &BreakEvent::load).number);
   table.add("avalanche_of_motion", avalanches_by(run, &BreakEvent::motion).number);
   table.add("loosened", events, [](const BreakEvent& event) { return numbers_of(event.loosened); });
-  if (!run.has_history()) return table;
-  table.add("friction_N", events, &BreakEvent::friction);
+  if (run.has_history()) table.add("friction_N", events, &BreakEvent::friction);
   return table;
 }
 
@@ -126,11 +108,11 @@ StoredEvents read_events(const std::filesystem::path& path, const EventPath& run
                                row + 2, number, row));
     }
     BreakEvent& event = events[row];
-    for (const Count& count : count_columns) event.*count.member = table.integer(row, column.at(count.name));
+    for (const auto& [name, member] : count_columns) event.*member = table.integer(row, column.at(name));
     const std::int64_t unstable = table.integer(row, column.at("unstable_modes"));
     event.unstable_modes = unstable < 0 ? std::nullopt : std::optional(unstable);
-    for (const Number& n : numbers(scene.path.driven_by)) event.*n.member = table.number(row, column.at(n.name));
-    for (const StressColumn& c : stress_columns) event.stress.*c.member = table.number(row, column.at(c.name));
+    for (const auto& [name, member] : numbers(scene.path.driven_by)) event.*member = table.number(row, column.at(name));
+    for (const auto& [name, member] : stress_columns) event.stress.*member = table.number(row, column.at(name));
     event.mode = enum_from<BreakMode>(table.text(row, column.at("mode")));
     event.loosened = discs_of(table, row, column.at("loosened"));
   }
@@ -178,10 +160,6 @@ std::optional<Difference> difference(const std::string& key, const TomlValue* th
 
 }  // namespace
 
-std::string deciding_keys_of_path(const Case& resolved, const std::filesystem::path& folder) {
-  return to_toml(deciding_tables(resolved.document, Decided::path), folder);
-}
-
 FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved, const std::string& note) {
   const TomlValue kept = casefile::read_document(there, {});
   const TomlValue old_keys = deciding_tables(kept, Decided::path);
@@ -220,13 +198,7 @@ void check_most_events(const FreeKeysOfPath& before, const Case& resolved, std::
 namespace {
 
 Series series(const std::string& label, const LoadCurve& curve, SeriesStyle style, PlotColour colour) {
-  Series s;
-  s.label = label;
-  s.x = curve.motion;
-  s.y = curve.load;
-  s.style = style;
-  s.colour = colour;
-  return s;
+  return {.label = label, .x = curve.motion, .y = curve.load, .style = style, .colour = colour};
 }
 
 std::string with_unit(const std::string& name, const std::string& unit) {
@@ -243,20 +215,17 @@ OutputCase of_end(OutputCase wanted) {
 void write_curve(const CommonOptions& options, const BreakageScene& scene, const EventPath& run,
                  const std::string& title) {
   const LoadCurve curve = curve_of(run);
-  if (curve.load.empty()) {
-    std::error_code ignored;  // that of an earlier path in the same folder
-    for (const std::string& name : plot_files("curve")) std::filesystem::remove(*options.out / name, ignored);
-    return;
-  }
+  if (curve.load.empty()) return remove_files(options, plot_files("curve"));
   const DrivenBy driven_by = scene.path.driven_by;
-  Plot plot;
-  plot.title = title;
-  plot.x.label = with_unit(driven_by == DrivenBy::strain ? "mean strain" : "motion", unit_of_motion(driven_by));
-  plot.y.label = with_unit(driven_by == DrivenBy::strain ? "stress" : "load", unit_of_load(driven_by));
-  plot.series = {
-      series("events", curve, SeriesStyle::line, PlotColour::sky_blue),
-      series("envelope under motion control", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
-      series("envelope under load control", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)};
+  const bool strain = driven_by == DrivenBy::strain;
+  const Plot plot{
+      .title = title,
+      .x = {.label = with_unit(strain ? "mean strain" : "motion", unit_of_motion(driven_by))},
+      .y = {.label = with_unit(strain ? "stress" : "load", unit_of_load(driven_by))},
+      .series = {
+          series("events", curve, SeriesStyle::line, PlotColour::sky_blue),
+          series("envelope under motion control", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
+          series("envelope under load control", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)}};
   write_plot(*options.out, "curve", plot, options.overwrite);
 }
 
@@ -290,17 +259,16 @@ void write_figures(const CommonOptions& options, const OutputCase& wanted, const
 
 void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,
                      const std::optional<PathState>& end) {
-  if (!end) return remove_state(options, of_end(wanted), "");
-  const PathState& state = *end;
+  if (!end) return remove_files(options, names_of_end_state(wanted));
   const Assembly& assembly = scene.assembly;
-  std::vector<DiscMotion> motions = state.motions;
+  std::vector<DiscMotion> motions = end->motions;
   if (const std::optional<Tensor2>& gradient = scene.path.pattern.gradient) {
     for (std::size_t d = 0; d < motions.size(); ++d) motions[d].u += lambda * (*gradient * assembly.centres[d]);
   }
   std::vector<Tensor2> stresses;
-  if (cells_hold_area(assembly)) stresses = disc_stresses(assembly, state.forces);
+  if (cells_hold_area(assembly)) stresses = disc_stresses(assembly, end->forces);
   write_state(options, wanted, "",
-              {.assembly = assembly, .motions = motions, .contact_forces = state.forces, .stresses = stresses});
+              {.assembly = assembly, .motions = motions, .contact_forces = end->forces, .stresses = stresses});
 }
 
 EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every,

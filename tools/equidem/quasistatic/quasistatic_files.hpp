@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,10 +33,6 @@ struct StoredEvents {
 };
 /// \throws Error (bad_input) where the table is another one, a row was altered, or rows are not numbered on from 0
 StoredEvents read_events(const std::filesystem::path& path, const EventPath& run, const BreakageScene& scene);
-
-/// The tables that decide the path, as text.
-/// \param folder to which paths in it are relative
-std::string deciding_keys_of_path(const Case& resolved, const std::filesystem::path& folder);
 
 /// Keys that a resumed path may have otherwise than before.
 struct FreeKeysOfPath {

@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -26,6 +27,7 @@
 #include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/pictures/picture.hpp"
 
+#include "accuracy.hpp"
 #include "command.hpp"
 #include "run/run_bonded.hpp"
 #include "run/run_grains.hpp"
@@ -101,7 +103,6 @@ Results memory_results(RunJob& job) {
       .add("loop_bytes", "", each * static_cast<double>(job.simulation().motions().size()), "in all", {Shown::bytes});
 }
 
-/// The time step, the intervals that it does not allow, probes without interval, memory.
 Results step_results(RunJob& job, const RunPlan& plan) {
   Results out = job.step();
   if (!plan.probes.empty() && !plan.probe_interval) out.line("probes", "not recorded: [output] has no probe_interval");
@@ -253,8 +254,7 @@ std::int64_t frames_of_film(std::size_t bodies) {
   return frames < fewest_frames ? 0 : static_cast<std::int64_t>(frames);
 }
 
-struct RunVerb {
-  CommonOptions common;
+struct RunVerb : CommonOptions {
   bool resume = false;
   std::optional<std::filesystem::path> begin_from;
   std::optional<double> accuracy;
@@ -262,8 +262,7 @@ struct RunVerb {
 
 /// Before the run, so that no hour is lost to a full folder.
 void check_outputs(const RunVerb& options, const RunJob& job) {
-  const OutputPlan plan(options.common);
-  options.resume ? plan.expect_json() : plan.expect_results(job.parts({}));
+  options.resume ? expect_json(options) : expect_results(options, job.parts({}));
 }
 
 /// Delivers the results of a run with its files, which keep job and result.
@@ -281,30 +280,107 @@ void deliver_run(const RunVerb& options, const char* status, Results results, St
     };
     parts.insert(parts.begin(), {"history.csv", write, OutputPart::page});
   }
-  CommonOptions written = options.common;
+  CommonOptions written = options;
   written.overwrite |= options.resume;
   deliver(written, status, std::move(results), std::move(times), parts, failure);
+}
+
+constexpr const char* plan_of_steps =
+    "first runs with the step of the case, that over root 2 and its half; the longest step that reaches it follows "
+    "from them; above is the run with the step of the case";
+
+constexpr std::int64_t finest = 4096;  // times as many steps as the case has
+
+/// Steps between which the user may interrupt.
+constexpr std::int64_t steps_at_once = 1000;
+
+double relative_distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double apart = 0, largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    apart = std::max(apart, std::abs(a[k] - b[k]));
+    largest = std::max(largest, std::abs(b[k]));
+  }
+  return apart > 0 ? apart / largest : 0;
+}
+
+std::vector<double> searched_values(const std::vector<DiscMotion>& motions) {
+  std::vector<double> values;
+  for (const DiscMotion& motion : motions) values.push_back(motion.u.x), values.push_back(motion.u.y);
+  return values;
+}
+
+std::vector<double> run_pilot(Case resolved) {
+  BondedRun pilot(std::move(resolved));
+  Simulation& simulation = pilot.simulation();
+  const std::int64_t steps = pilot.steps();
+  Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
+  for (std::int64_t done = 0; done < steps; done += steps_at_once) {
+    progress.update(static_cast<double>(done) / static_cast<double>(steps));
+    simulation.advance(std::min(steps_at_once, steps - done));
+  }
+  return searched_values(simulation.motions());
+}
+
+/// The longest step for which the displacements at the end are within the accuracy, relative to the largest one. Pilots
+/// are runs with the step of the case, that over root 2, and its half (and finer ones, until the motions at the end
+/// converge by the order of the integrator); they write nothing.
+/// \param given the run with the step of the case
+/// \throws Error (bad_input) where the run goes to rest
+SearchedSetting searched_step(const BondedRun& given, double accuracy) {
+  if (given.goes_to_rest()) {
+    bad_input_at(given.where("run.until_rest"), "--accuracy does not act on a run to rest",
+                 "run.until_rest is its accuracy",
+                 "Leave it out, or set run.until_rest to the unbalanced force wanted");
+  }
+  const double duration = given.run().duration.value_or(0);
+  return {.refinement = {.accuracy = accuracy,
+                         .order = static_cast<double>(given.order()),
+                         .first = given.steps(),
+                         .most = finest * given.steps(),
+                         .unit = "steps",
+                         .apart = std::numbers::sqrt2,
+                         .distance = relative_distance},
+          .setting_of =
+              [duration](std::int64_t steps) {
+                return AccuracySetting{{"run.time_step", duration / static_cast<double>(steps)}};
+              },
+          .values_of = run_pilot,
+          .of =
+              "displacements at the end of the run, over the largest of them, against those of a step of 0, "
+              "extrapolated",
+          .knob = fmt::format("the time step, {:.6g} s in the case", given.time_step().step)};
+}
+
+ReachedAccuracy reached_by_step(const CaseSearch& search) {
+  ReachedAccuracy reached = search.reached();
+  std::vector<std::string> numbers;
+  double steps = 0;
+  for (const std::int64_t count : search.before()) {
+    steps += static_cast<double>(count);
+    numbers.push_back(fmt::format("{}", count));
+  }
+  reached.pilots_factor = steps / static_cast<double>(search.level());
+  reached.pilots = fmt::format("runs of {} steps", listed(std::move(numbers)));
+  return reached;
 }
 
 /// Make all steps and deliver the results; false, and nothing delivered, where the step that the search proposed is too
 /// long.
 bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job, CaseSearch* search = nullptr) {
-  const CommonOptions& common = options.common;
   RunJob& job = *shared_job;
   RunPlan plan = job.plan();
-  if (common.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
-  const HistoryFolder tables(common.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
+  if (options.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
+  const HistoryFolder tables(options.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
   if (tables.is_temporary()) plan.frame_interval.reset();
   const auto shared_result = std::make_shared<RunResult>();
   const RunResult& result = *shared_result;
   const std::optional<Error> failure = failure_of([&] {
     try {
       run_through(job.simulation(), plan,
-                  {.folder = tables.path(), .overwrite = common.overwrite, .resume = options.resume}, *shared_result);
+                  {.folder = tables.path(), .overwrite = options.overwrite, .resume = options.resume}, *shared_result);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::interrupted) throw;
-      throw_stopped(common, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
-                    "Run the same command with --resume to do the rest");
+      throw_stopped(options, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps));
     }
   });
   if (failure && failure->kind() == ErrorKind::bad_input && result.steps_done == 0) throw *failure;
@@ -338,24 +414,22 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
               failure);
 }
 
-int run_to_accuracy(RunVerb options, double accuracy) {
-  CaseSearch search(options.common, [&] {
-    const BondedRun given(read_case(options.common));
+void run_to_accuracy(RunVerb options, double accuracy) {
+  CaseSearch search(options, [&] {
+    const BondedRun given(read_case(options));
     check_outputs(options, given);
     return searched_step(given, accuracy);
   }());
-  const auto lock = lock_out(options.common);
+  const auto lock = lock_out(options);
   for (;;) {
     const auto job = std::make_shared<BondedRun>(search.propose());
-    if (step_through(options, job, &search)) return 0;
-    options.common.overwrite = true;  // files of the step that was too long
+    if (step_through(options, job, &search)) return;
+    options.overwrite = true;  // files of the step that was too long
   }
 }
 
-/// Combinations of options that are not possible.
 void check_options(const RunVerb& options, bool collide) {
-  const CommonOptions& common = options.common;
-  if (options.resume && !common.out)
+  if (options.resume && !options.out)
     bad_input("--resume without --out", "the checkpoint lies in that folder",
               "Name the folder of the run that is to go on");
   if (options.accuracy && collide) {
@@ -373,26 +447,25 @@ void check_options(const RunVerb& options, bool collide) {
   if (options.begin_from && !collide)
     bad_input("--begin-from of bonded discs", "only runs of grains are in stages, with a checkpoint at the end of each",
               "Leave it out; --resume goes on with a longer duration");
-  if (common.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
+  if (options.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
 }
 
-int run(const RunVerb& options) {
-  const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
+void run(const RunVerb& options) {
+  const bool collide = describes_grains(casefile::read_document(options.case_file, options.set));
   check_options(options, collide);
-  if (options.accuracy && !options.common.dry_run) return run_to_accuracy(options, *options.accuracy);
-  const std::shared_ptr<RunJob> job = make_run_job(options.common, options.resume, options.begin_from);
+  if (options.accuracy && !options.dry_run) return run_to_accuracy(options, *options.accuracy);
+  const std::shared_ptr<RunJob> job = make_run_job(options, options.resume, options.begin_from);
   check_outputs(options, *job);
-  const auto lock = lock_out(options.common);
-  if (options.common.dry_run) {
-    Results results = dry_run_results(*job, options.common.out.has_value());
+  const auto lock = lock_out(options);
+  if (options.dry_run) {
+    Results results = dry_run_results(*job, options.out.has_value());
     if (options.accuracy) results.append(accuracy_plan(*options.accuracy, plan_of_steps));
-    deliver(options.common, "dry_run", results, job->times());
+    deliver(options, "dry_run", results, job->times());
   } else if (job->goes_to_rest()) {
     relax_to_rest(options, job);
   } else {
     step_through(options, job);
   }
-  return 0;
 }
 
 }  // namespace
@@ -492,7 +565,7 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
 
 Run declare_run(CLI::App& command) {
   const auto options = std::make_shared<RunVerb>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
   command
       .add_option("--begin-from", options->begin_from,

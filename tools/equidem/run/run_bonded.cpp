@@ -2,12 +2,8 @@
 #include "run/run_bonded.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <functional>
 #include <iterator>
-#include <numbers>
 #include <string_view>
 #include <utility>
 
@@ -22,7 +18,6 @@
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/vtk.hpp"
-#include "equidem/output/pictures/picture.hpp"
 
 #include "case_text.hpp"
 #include "solve/solve.hpp"
@@ -208,7 +203,6 @@ std::string checksum_of_schedules(const Scene& scene) {
   return sum.text();
 }
 
-/// In what order keys stand does not matter.
 void sort_keys(TomlValue& value) {
   std::ranges::stable_sort(value.entries, {}, [](const auto& entry) -> const std::string& { return entry.name; });
   for (auto& [name, entry] : value.entries) sort_keys(entry);
@@ -234,7 +228,6 @@ Simulation simulation_of(const Problem& problem, const Scene& scene, const Simul
   return casefile::with_place(problem.resolved.where("run"), [&] { return Simulation(scene, options); });
 }
 
-/// Forces of the contacts between discs.
 std::vector<ContactForce> forces_of(const Scene& scene, LoopKind::Motion motion,
                                     const std::vector<DiscMotion>& motions) {
   std::vector<ContactForce> forces;
@@ -305,13 +298,8 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
   };
   const OutputCase& output = problem_.resolved.output;
   std::vector<OutputPart> parts{case_part([this]() -> const Case& { return problem_.resolved; })};
-  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write,
-                        std::vector<std::string> files = {}) {
-    parts.push_back({name, std::move(write), OutputPart::page, std::move(files)});
-  };
-  const auto state_part = [&](const char* name,
-                              const std::function<void(const CommonOptions&, const AssemblyState&)>& write,
-                              std::vector<std::string> files) {
+  const auto state_part = [&](bool wanted, const char* name, std::vector<std::string> files, const auto& write) {
+    if (!wanted) return;
     const auto write_state = [this, write](const CommonOptions& into) {
       if (goes_to_rest() && at_rest_.empty()) return;
       const std::vector<DiscMotion> motions = goes_to_rest() ? at_rest_ : simulation_.motions();
@@ -319,45 +307,35 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
       if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
       write(into, {.assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}});
     };
-    part(name, write_state, std::move(files));
+    parts.push_back({name, write_state, OutputPart::page, std::move(files)});
   };
-  if (output.csv) {
-    const auto write = [](const CommonOptions& into, const AssemblyState& state) {
-      write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
-    };
-    state_part("discs.csv", write, {"discs.csv"});
-  }
-  if (output.vtk) {
-    const auto write = [](const CommonOptions& into, const AssemblyState& state) {
-      write_vtk(*into.out, "state", state, into.overwrite);
-    };
-    state_part("the state for ParaView", write, {});
-  }
-  if (output.picture) {
-    const auto draw = [this](const CommonOptions& into, const AssemblyState& state) {
-      const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
-      write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
-    };
-    state_part("the picture", draw, {"picture.svg"});
-  }
-  if (goes_to_rest()) return parts;
-  part("the plot of energies", [this, &result](const CommonOptions& into) {
-    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
+  state_part(output.csv, "discs.csv", {"discs.csv"}, [](const CommonOptions& into, const AssemblyState& state) {
+    write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
   });
-  if (output.picture)
-    part("the film", [this, &result](const CommonOptions& /*into*/) {
-      add_film(problem_.resolved.title, problem_.assembly, result.record.film);
-    });
+  state_part(output.vtk, "the state for ParaView", {}, [](const CommonOptions& into, const AssemblyState& state) {
+    write_vtk(*into.out, "state", state, into.overwrite);
+  });
+  const auto draw = [this](const CommonOptions& into, const AssemblyState& state) {
+    const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
+    write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
+  };
+  state_part(output.picture, "the picture", {"picture.svg"}, draw);
+  if (goes_to_rest()) return parts;
+  const auto draw_energies = [this, &result](const CommonOptions& into) {
+    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
+  };
+  parts.push_back({"the plot of energies", draw_energies, OutputPart::page});
+  const auto draw_film = [this, &result](const CommonOptions& /*into*/) {
+    add_film(problem_.resolved.title, problem_.assembly, result.record.film);
+  };
+  if (output.picture) parts.push_back({"the film", draw_film, OutputPart::page});
   return parts;
-}
-
-RelaxationOptions BondedRun::relaxation_options() const {
-  return {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest};
 }
 
 Results BondedRun::relax(StageTimes& times) {
   Stopwatch watch;
-  Relaxation rest = equidem::relax(scene_, relaxation_options());
+  Relaxation rest = equidem::relax(
+      scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
   times.add("relaxation", watch.lap());
   at_rest_ = std::move(rest.motions);
   Results out = scene()
@@ -500,80 +478,6 @@ Results BondedRun::advice(const Balance& balance) const {
   if (balance.most > Balance::doubtful)
     out.warning("", "that is much: compare with a shorter step before trusting the motion");
   return out;
-}
-
-namespace {
-
-constexpr std::int64_t finest = 4096;  // times as many steps as the case has
-
-/// Steps between which the user may interrupt.
-constexpr std::int64_t steps_at_once = 1000;
-
-double relative_distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double apart = 0, largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    apart = std::max(apart, std::abs(a[k] - b[k]));
-    largest = std::max(largest, std::abs(b[k]));
-  }
-  return apart > 0 ? apart / largest : 0;
-}
-
-std::vector<double> run_pilot(Case resolved) {
-  BondedRun pilot(std::move(resolved));
-  Simulation& simulation = pilot.simulation();
-  const std::int64_t steps = pilot.steps();
-  Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
-  for (std::int64_t done = 0; done < steps; done += steps_at_once) {
-    progress.update(static_cast<double>(done) / static_cast<double>(steps));
-    simulation.advance(std::min(steps_at_once, steps - done));
-  }
-  return searched_values(simulation.motions());
-}
-
-}  // namespace
-
-SearchedSetting searched_step(const BondedRun& given, double accuracy) {
-  if (given.goes_to_rest()) {
-    bad_input_at(given.where("run.until_rest"), "--accuracy does not act on a run to rest",
-                 "run.until_rest is its accuracy",
-                 "Leave it out, or set run.until_rest to the unbalanced force wanted");
-  }
-  const double duration = given.run().duration.value_or(0);
-  return {.refinement = {.accuracy = accuracy,
-                         .order = static_cast<double>(given.order()),
-                         .first = given.steps(),
-                         .most = finest * given.steps(),
-                         .unit = "steps",
-                         .apart = std::numbers::sqrt2,
-                         .distance = relative_distance},
-          .setting_of =
-              [duration](std::int64_t steps) {
-                return AccuracySetting{{"run.time_step", duration / static_cast<double>(steps)}};
-              },
-          .values_of = run_pilot,
-          .of =
-              "displacements at the end of the run, over the largest of them, against those of a step of 0, "
-              "extrapolated",
-          .knob = fmt::format("the time step, {:.6g} s in the case", given.time_step().step)};
-}
-
-std::vector<double> searched_values(const std::vector<DiscMotion>& motions) {
-  std::vector<double> values;
-  for (const DiscMotion& motion : motions) values.push_back(motion.u.x), values.push_back(motion.u.y);
-  return values;
-}
-
-ReachedAccuracy reached_by_step(const CaseSearch& search) {
-  ReachedAccuracy reached = search.reached();
-  std::vector<std::string> numbers;
-  double steps = 0;
-  for (const std::int64_t count : search.before()) {
-    steps += static_cast<double>(count);
-    numbers.push_back(fmt::format("{}", count));
-  }
-  reached.pilots_factor = steps / static_cast<double>(search.level());
-  reached.pilots = fmt::format("runs of {} steps", listed(std::move(numbers)));
-  return reached;
 }
 
 }  // namespace equidem

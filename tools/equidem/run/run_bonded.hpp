@@ -3,7 +3,6 @@
 /// `equidem run` of bonded discs, and the time step that an accuracy needs (--accuracy).
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -20,7 +19,6 @@
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 
-#include "accuracy.hpp"
 #include "problem.hpp"
 #include "run/run_job.hpp"
 
@@ -118,7 +116,6 @@ class BondedRun final : public RunJob {
   /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
   /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
-  [[nodiscard]] RelaxationOptions relaxation_options() const;
   /// None without waves, and where the cell has no stiffness or is too large to be homogenized beside a run.
   [[nodiscard]] std::optional<WaveStiffness> stiffness_of_waves() const;
   [[nodiscard]] LargestDeformation deformation_at(const std::vector<DiscMotion>& motions) const;
@@ -133,18 +130,5 @@ class BondedRun final : public RunJob {
   RunawayWatch watch_;
   std::vector<DiscMotion> at_rest_;  ///< after relax()
 };
-
-/// The longest step for which the displacements at the end are within the accuracy, relative to the largest one. Pilots
-/// are runs with the step of the case, that over root 2, and its half (and finer ones, until the motions at the end
-/// converge by the order of the integrator); they write nothing.
-/// \param given the run with the step of the case
-/// \throws Error (bad_input) where the run goes to rest
-SearchedSetting searched_step(const BondedRun& given, double accuracy);
-inline constexpr const char* plan_of_steps =
-    "first runs with the step of the case, that over root 2 and its half; the longest step that reaches it follows "
-    "from them; above is the run with the step of the case";
-std::vector<double> searched_values(const std::vector<DiscMotion>& motions);
-/// \param search that has ended
-ReachedAccuracy reached_by_step(const CaseSearch& search);
 
 }  // namespace equidem

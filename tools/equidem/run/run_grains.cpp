@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
@@ -13,14 +12,11 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
-#include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
 #include "equidem/output/files/histories.hpp"
 #include "equidem/output/pictures/field_files.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/plots/plot.hpp"
-
-#include "case_text.hpp"
 
 namespace equidem {
 namespace {
@@ -221,7 +217,7 @@ void GrainMeasures::write_files(const CommonOptions& into) const {
     write_plot(folder, "surface_plot", plot, into.overwrite);
     Series ratio{.label = "", .colour = PlotColour::blue, .column = "void_ratio"};
     for (const MeasuredMoment& moment : measures_.moments()) ratio.add(moment.time, moment.void_ratio);
-    if (std::any_of(ratio.y.begin(), ratio.y.end(), [](double e) { return std::isfinite(e); })) {
+    if (std::ranges::any_of(ratio.y, [](double e) { return std::isfinite(e); })) {
       Plot history{.title = resolved_.title, .x = {.label = "time, s"}, .y = {.label = "void ratio e"}};
       history.series.push_back(std::move(ratio));
       write_plot(folder, "void_ratio_plot", history, into.overwrite);
@@ -239,7 +235,7 @@ void write_probe_paths(const CommonOptions& into, const GrainCase& resolved) {
   Plot plot{.title = resolved.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
   const auto& names = cells.front();
   for (const Probe& probe : resolved.probes) {
-    const auto at = std::find(names.begin(), names.end(), probe.name + "_x_m");
+    const auto at = std::ranges::find(names, probe.name + "_x_m");
     if (at == names.end() || plot.series.size() == std::size(colours)) continue;
     const auto column = static_cast<std::size_t>(at - names.begin());
     Series series{.label = probe.name, .colour = colours[plot.series.size()]};

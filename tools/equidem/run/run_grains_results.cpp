@@ -25,32 +25,19 @@ std::string range(double smallest, double largest) {
   return smallest == largest ? fmt::format("{:.6g}", smallest) : fmt::format("{:.6g} to {:.6g}", smallest, largest);
 }
 
-/// Number of bodies of each shape, in the order of GrainShape.
-std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
-  std::array<std::int64_t, 3> counts{};
-  for (const Grain& grain : resolved.scene.grains) ++counts[static_cast<std::size_t>(grain.shape())];
-  return counts;
-}
-
-const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
-  using enum GrainOptions::EllipseLaw;
-  return law == exact
-             ? "ellipses meet at their closest points (exact)"
-             : "ellipses meet by the test of enlarged ellipses: shallow contacts are missed, and the normal is "
-               "that of the body with the lower number";
-}
-
 /// \param walls of all stages, one of each name
 void add_bodies(Results& out, const GrainCase& resolved, const std::vector<Wall>& walls) {
   double mass = 0, smallest = INFINITY, largest = 0;
   std::map<std::string, std::int64_t> groups;
+  std::array<std::int64_t, 3> counts{};  // in the order of GrainShape
   for (const Grain& grain : resolved.scene.grains) {
     mass += grain.inertia.mass;
     smallest = std::min(smallest, grain.radius);
     largest = std::max(largest, grain.radius);
     ++groups[resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]];
+    ++counts[static_cast<std::size_t>(grain.shape())];
   }
-  const auto [round, ellipses, clumps] = counts_of_shapes(resolved);
+  const auto [round, ellipses, clumps] = counts;
   out.set("body", to_string(resolved.body)).set("grains", resolved.scene.grains.size()).line("bodies");
   for (const auto& [count, name] :
        {std::pair{round, to_string(resolved.body)}, std::pair{ellipses, std::string("ellipse")},
@@ -70,7 +57,11 @@ void add_bodies(Results& out, const GrainCase& resolved, const std::vector<Wall>
                                              ? counted(std::ssize(most.discs), "disc")
                                              : fmt::format("{} to {} discs", fewest.discs.size(), most.discs.size())));
   }
-  if (ellipses > 0) out.line("", describe_ellipse_contact(resolved.options.ellipse_law));
+  if (ellipses > 0)
+    out.line("", resolved.options.ellipse_law == GrainOptions::EllipseLaw::exact
+                     ? "ellipses meet at their closest points (exact)"
+                     : "ellipses meet by the test of enlarged ellipses: shallow contacts are missed, and the normal is "
+                       "that of the body with the lower number");
   if (groups.size() > 1)
     out.line("groups",
              joined(groups, [](const auto& group) { return fmt::format("{} {}", group.first, group.second); }));
@@ -143,7 +134,6 @@ std::vector<std::string> lines_of_pairs(const GrainCase& resolved, const Contact
   return lines;
 }
 
-/// The contacts of the first stage, and of later ones where they change.
 void add_pairs(Results& out, const GrainCase& resolved) {
   std::vector<std::string> last = lines_of_pairs(resolved, resolved.contacts, resolved.scene);
   for (const std::string& line : last) out.line(&line == last.data() ? "contacts" : "", line);
@@ -170,7 +160,6 @@ void add_law(Results& out, const GrainCase& resolved) {
            "they press on one another energy comes and goes; for beds exact_flow or linear_dashpot");
 }
 
-/// Number of bonds, their integration over a step, the step limit.
 void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& step) {
   const bool later =
       std::ranges::any_of(resolved.stages, [](const StageCase& stage) { return stage.bonds.has_value(); });
@@ -288,8 +277,6 @@ Results shaking_results(const Shaking& shaking) {
   return out.set("peak_acceleration", shaking.peak_acceleration).set("direction", shaking.direction);
 }
 
-/// stages: a list with name, start, end, steps, ended_by, effects; removed, renamed, added, bonds_made, renamed_walls
-/// (from, to) where there are some; what it was to end by, and its shaking.
 Results stage_results(const GrainCase& resolved, const std::vector<StageReport>& stages, double step) {
   const bool any_changes = std::ranges::any_of(stages, [](const StageReport& s) { return !changes_of(s).empty(); });
   std::vector<Results> rows;
@@ -351,7 +338,6 @@ std::vector<Results> servo_rows(const GrainCase& resolved, const std::vector<Sta
   return rows;
 }
 
-/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error, and stage where there are some.
 Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
                       const std::vector<ServoReport>& present) {
   const char* force = resolved.body == Body::disc ? "N/m" : "N";
@@ -391,7 +377,6 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   return out;
 }
 
-/// cell/servos: a list with component, reached, wanted, stress, overshoot, mean_error, and stage where there are some.
 Results cell_servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
                            const std::vector<CellServoReport>& present) {
   std::vector<std::string> missed;
@@ -426,7 +411,6 @@ constexpr std::pair<BreakMode, PlotColour> modes_of_bonds[] = {{BreakMode::tensi
                                                                {BreakMode::bending, PlotColour::green}};
 }  // namespace
 
-/// Their number by mode, the first one, and the energy of their springs.
 Results GrainRun::breaks() const {
   Results out;
   if (!case_.scene.strengths) return out;

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/plots/plot.hpp"

@@ -68,6 +68,14 @@ void add_stress(Results& out, const SolvedCase& result) {
       .add("moment_per_area", "", result.moment_per_area, "N m per m²");
 }
 
+/// Theory of the tension test on a lattice of equal springs; none for other assemblies and springs.
+std::optional<TensionTheory> tension_theory(const Problem& problem) {
+  if (!problem.tension || !problem.springs.constants || !problem.springs.springs.uniform()) return {};
+  const Lattice* lattice = problem.resolved.assembly.arrangement;
+  if (lattice == nullptr || lattice->tension == nullptr) return {};
+  return lattice->tension(problem.springs.constants->ratio());
+}
+
 /// The factorization, which all load cases share.
 Results solver_results(const Problem& problem, const Equilibrium& e) {
   Results out;
@@ -89,7 +97,7 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
   }
   out.line("stability", stability(problem, e));
   if (e.unstable_modes > 0) out.warn();
-  out.set("negative_pivots", known(e.negative_pivots)).set("unstable_modes", known(e.unstable_modes));
+  out.set("negative_pivots", e.negative_pivots).set("unstable_modes", e.unstable_modes);
   return out.set("pivot_growth", e.pivot_growth);
 }
 
@@ -201,7 +209,6 @@ std::string suffix_of(const std::string& load_case) {
   return load_case.empty() ? "" : "_" + load_case;
 }
 
-/// The problem, and its load cases as far as they are solved.
 struct Solution {
   std::optional<Problem> problem = {};
   std::vector<SolvedCase> cases = {};
@@ -244,6 +251,68 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
         {"the state", write, OutputPart::page, state_names(resolved.output, suffix_of(resolved.load_cases[k].name))});
   }
   return parts;
+}
+
+constexpr const char* plan_of_blocks =
+    "blocks from 9 rows on are solved until their errors give the size that reaches it, at most 1e6 discs; below is "
+    "the block of the case";
+
+constexpr double most_discs_of_block = 1e6;
+constexpr double work_per_rows = 2.4;  // time of a plane block of n x n discs as n^2.4, a little above that of n²
+
+std::int64_t one_beyond_a_multiple_of_four(double n) {
+  return 4 * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil((n - 1) / 4 - 1e-9))) + 1;
+}
+
+std::vector<double> searched_values(const TensionResult& result) {
+  return {result.poisson_ratio, std::log(std::abs(result.stiffness_ratio))};
+}
+
+std::vector<double> solve_block(Case resolved) {
+  const Problem problem = prestressed(build_problem(std::move(resolved)));
+  EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  return searched_values(*solve_case(problem, solver, problem.load_cases.front()).tension);
+}
+
+/// A tension test of a lattice misses the lattice without sides by about one over its rows. Finds the rows and columns,
+/// in the proportion of the case, for which nu, and the stiffness ratio (36) relative to itself, are within the
+/// accuracy. Sides of whole fours and one disc: gauges then sit alike in all.
+/// \param resolved a tension test of a lattice
+SearchedSetting searched_block(const Case& resolved, double accuracy) {
+  const auto& [columns, rows] = std::tie(resolved.assembly.lattice.columns, resolved.assembly.lattice.rows);
+  const double aspect = static_cast<double>(columns) / rows;
+  return {.refinement = {.accuracy = accuracy,
+                         .order = 1,
+                         .first = one_beyond_a_multiple_of_four(std::max(9.0, 9 / aspect)),
+                         .most = one_beyond_a_multiple_of_four(std::sqrt(most_discs_of_block / aspect)) - 4,
+                         .unit = "rows",
+                         .admissible =
+                             [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }},
+          .setting_of =
+              [aspect](std::int64_t n) {
+                const auto wide = one_beyond_a_multiple_of_four(std::round(aspect * static_cast<double>(n)));
+                return AccuracySetting{{"assembly.rows", static_cast<double>(n)},
+                                       {"assembly.columns", static_cast<double>(wide)}};
+              },
+          .values_of = solve_block,
+          .of = "nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated",
+          .knob = fmt::format("the size of the block, {} x {} in the case", columns, rows),
+          .work_exponent = work_per_rows};
+}
+
+ReachedAccuracy reached_by_block(const CaseSearch& search) {
+  ReachedAccuracy reached = search.reached();
+  const auto [fewest, most] = std::ranges::minmax(search.pilots());
+  reached.pilots = fmt::format("{} of {} to {} rows", counted(std::ssize(search.before()), "block"), fewest, most);
+  reached.pilots_factor = search.seconds_before();
+  auto& more = reached.ten_times_more;
+  if (const double rows = more.value[0].second, columns = more.value[1].second; rows * columns > most_discs_of_block) {
+    more.note = fmt::format(
+        "{} x {} discs, more than are tried; a periodic cell has no sides: 'equidem homogenize' gives both to "
+        "round-off",
+        columns, rows);
+  }
+  return reached;
 }
 
 /// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
@@ -301,28 +370,31 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
   return true;
 }
 
-int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
+void solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   Case resolved = read_case(options);
   const auto solution = std::make_shared<Solution>();
   const std::vector<OutputPart> parts = output_parts(resolved, solution);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   const auto build = [&](Case wanted) { solution->problem.emplace(prestressed(build_problem(std::move(wanted)))); };
-  const bool searched = accuracy && block_can_be_chosen(resolved);
+  const bool searched = accuracy && resolved.test && resolved.assembly.arrangement != nullptr;
   if (searched && !options.dry_run) {
     CaseSearch search(options, searched_block(resolved, *accuracy));
     do {
       build(search.propose());
     } while (!solve_once(options, parts, solution, accuracy, &search));
-    return 0;
+    return;
   }
   build(std::move(resolved));
-  if (!options.dry_run) return solve_once(options, parts, solution, accuracy, nullptr) ? 0 : 1;
+  if (!options.dry_run) {
+    solve_once(options, parts, solution, accuracy, nullptr);
+    return;
+  }
   const Problem& problem = *solution->problem;
   Results further;
   if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
   const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
-  return dry_run(options, problem, further, AssemblyKeys::all, {.bytes_of_picture = picture});
+  dry_run(options, problem, further, AssemblyKeys::all, {.bytes_of_picture = picture});
 }
 
 }  // namespace

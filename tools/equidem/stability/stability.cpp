@@ -19,7 +19,6 @@
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/waves/extreme_eigenvalues.hpp"
 #include "equidem/waves/natural_frequencies.hpp"
 
 #include "command.hpp"
@@ -43,8 +42,7 @@ std::string name_of(const ZonePoint& wave, const std::vector<ZonePoint>& equival
   if (wave.name.empty()) return fmt::format("q = ({:.6g}, {:.6g}) rad/m", wave.q.x, wave.q.y);
   if (wave.name == long_waves_name)
     return fmt::format("long waves, q -> 0 along ({:.4g}, {:.4g})", wave.q.x / norm(wave.q), wave.q.y / norm(wave.q));
-  const auto alike =
-      std::count_if(equivalent.begin(), equivalent.end(), [&](const ZonePoint& p) { return p.name == wave.name; });
+  const auto alike = std::ranges::count(equivalent, wave.name, &ZonePoint::name);
   const std::string place = fmt::format("({:.6g}, {:.6g}) rad/m", wave.q.x, wave.q.y);
   return alike > 1 ? fmt::format("the {} points {}, such as {}", alike, wave.name, place)
                    : fmt::format("the point {}, {}", wave.name, place);
@@ -91,7 +89,7 @@ void add_inertia(Results& out, const Stability& s) {
                                *inertia.unstable_modes)
                  : "; the rotations alone are singular, so that they cannot be told apart");
   }
-  out.set("unstable_modes", known(inertia.unstable_modes));
+  out.set("unstable_modes", inertia.unstable_modes);
 }
 
 /// The factor of the forces at rest at which stability is lost.
@@ -480,6 +478,25 @@ void write_survey(const CommonOptions& options, const Problem& problem, const St
     write_plot(folder, ratio_plot, plot_of_critical_ratio(s), options.overwrite);
 }
 
+/// Along the path through the Brillouin zone: dispersion/along in rad/m, dispersion/wave_vectors in 1/m and
+/// dispersion/squared_frequencies, ascending, in 1/s².
+std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey) {
+  std::vector<double> along, squared_frequencies;
+  std::vector<Vec2> wave_vectors;
+  for (const PathPoint& point : survey.path) {
+    along.push_back(point.along);
+    wave_vectors.push_back(point.at.q);
+    squared_frequencies.insert(squared_frequencies.end(), point.squared_frequencies.begin(),
+                               point.squared_frequencies.end());
+  }
+  const std::size_t branches = along.empty() ? 0 : squared_frequencies.size() / along.size();
+  ResultArray table = array_of("dispersion/squared_frequencies", "1/s²", std::move(squared_frequencies), branches);
+  table.rows = along.size();
+  table.stride = branches;
+  return {array_of("dispersion/along", "rad/m", std::move(along), 1),
+          array_of("dispersion/wave_vectors", "1/m", std::move(wave_vectors), 2), std::move(table)};
+}
+
 struct StabilityCommand : CommonOptions {
   int frequencies = StabilityOptions{}.natural_frequencies;
 };
@@ -544,7 +561,6 @@ void draw_mode(const CommonOptions& options, const Problem& problem, const Stabi
                        .displacement_scale = visible * std::max(right.x - left.x, high.y - low.y)});
 }
 
-/// The problem that is judged, and the judgement.
 struct Judged {
   std::optional<Problem> problem = {};
   Stability stability = {};
@@ -561,14 +577,13 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
 }
 
 /// Loads and motions that make a prestress are not solved for.
-int dry_run_survey(const StabilityCommand& options, Problem given) {
+void dry_run_survey(const StabilityCommand& options, Problem given) {
   const bool acted_on = acts_on_rest(given);
   const Problem problem =
       acted_on && !carries_forces(given.assembly) ? std::move(given) : prestressed(std::move(given));
 
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
-  const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
   Results results;
   if (acted_on) results.line("forces at rest", "those of the loads and motions of the case count: one more solution");
   results.line("waves").set("waves", Results());
@@ -590,19 +605,19 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
   const auto inertia = inertia_of(assembly, judged.density, judged.body);
   check_magnitudes(assembly, springs, inertia);
   results.line("time step")
-      .add("element_bound_time_step", "", 2 / std::sqrt(element_bound(assembly, springs, inertia, effects.rotation)),
+      .add("element_bound_time_step", "",
+           2 / std::sqrt(element_bound(assembly, springs, inertia, problem.effects().rotation)),
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  return dry_run(options, problem, results, AssemblyKeys::size,
-                 {.inertia = vectors_of_frequencies(options.frequencies)});
+  dry_run(options, problem, results, AssemblyKeys::size, {.inertia = vectors_of_frequencies(options.frequencies)});
 }
 
-int stability(const StabilityCommand& options) {
+void stability(const StabilityCommand& options) {
   Case resolved = read_case(options);
   const auto judged = std::make_shared<Judged>();
   const std::vector<OutputPart> parts = output_parts(resolved, judged);
-  OutputPlan(options).expect_results(parts);
+  expect_results(options, parts);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
   Problem built = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
@@ -624,7 +639,6 @@ int stability(const StabilityCommand& options) {
     hand_over(motion_arrays(fmt::format("modes/{}/", k), mode));
   }
   hand_over(std::shared_ptr<const Assembly>(judged, &problem.assembly));
-  return 0;
 }
 
 }  // namespace

@@ -31,15 +31,27 @@
 namespace equidem {
 namespace {
 
+struct StudyVerb : CommonOptions {
+  std::string file;
+  StudyOptions options;
+  std::optional<double> accuracy;
+};
+
+/// The command that repeats the study.
+std::string command_of(const StudyVerb& verb) {
+  std::string command = fmt::format("equidem study {} --seed {} --threads {} --budget {:g} --rounds {}", verb.file,
+                                    verb.options.seed, thread_count(), verb.options.budget, verb.options.least_rounds);
+  if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
+  return command;
+}
+
 /// A study, its result and how it was run.
 struct StudyReport {
+  const StudyVerb& verb;
   const Study& study;
-  StudyResult result;
-  StudyOptions options;
-  std::string command;   ///< command that repeats the study
   std::string checksum;  ///< of its settings on this machine and build
-  std::optional<double> accuracy;
-  std::optional<Recommendation> recommendation;  ///< set if an accuracy is requested
+  StudyResult result = {};
+  std::optional<Recommendation> recommendation = {};  ///< set if an accuracy is requested
 };
 
 std::string cell(double value) {
@@ -142,27 +154,27 @@ std::string legend_of(const StudyReport& report, const std::string& method) {
 }
 
 /// The rows that were timed, method by method in the order of the study.
-std::vector<std::pair<std::string, std::vector<std::size_t>>> by_method(const StudyReport& report) {
-  std::vector<std::pair<std::string, std::vector<std::size_t>>> methods;
+using MethodRows = std::pair<std::string, std::vector<std::size_t>>;
+std::vector<MethodRows> by_method(const StudyReport& report) {
+  std::vector<MethodRows> methods;
   for (std::size_t k = 0; k < report.result.rows.size(); ++k) {
     const StudyRow& row = report.result.rows[k];
     if (row.time.repetitions == 0) continue;
-    auto at =
-        std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.first == row.setting.method; });
+    auto at = std::ranges::find(methods, row.setting.method, &MethodRows::first);
     if (at == methods.end()) at = methods.insert(at, {row.setting.method, {}});
     at->second.push_back(k);
   }
   return methods;
 }
 
-/// Report and JSON of the verb.
 Results study_results(const StudyReport& report) {
   const Study& study = report.study;
   const StudyResult& result = report.result;
+  const StudyOptions& options = report.verb.options;
   Results out;
   out.set("study", study.name).set("title", study.title).set("complete", result.complete);
-  out.set("command", report.command).set("machine", machine_results());
-  out.set("seed", report.options.seed).set("rounds", result.rounds).set("budget", report.options.budget);
+  out.set("command", command_of(report.verb)).set("machine", machine_results());
+  out.set("seed", options.seed).set("rounds", result.rounds).set("budget", options.budget);
   out.set("checksum", report.checksum).block(study.title + "\n\n");
   std::vector<Results> settings, curves, fronts, recommendations;
   for (const StudyRow& row : result.rows) settings.push_back(row_results(report, row));
@@ -180,20 +192,20 @@ Results study_results(const StudyReport& report) {
   out.list("quantities", {quantity_results(study)}).line("machine", machine_text());
   out.line("timing", fmt::format("{} after one to warm up, all settings in an order drawn anew each time (seed {}); "
                                  "median, quartiles apart, number n",
-                                 counted(result.rounds, "round"), report.options.seed));
+                                 counted(result.rounds, "round"), options.seed));
   out.block("\n").table("", table_of(report));
   if (!fronts.empty()) out.block("\n* on a front: nothing is both faster and as accurate\n");
   if (std::ranges::any_of(result.curves, [](const StudyCurve& curve) { return curve.order.has_value(); }))
     out.block("\norders, errors as h^p over the finest levels (95 % interval)\n");
   out.list("orders", std::move(curves));
   out.block("\n" + (result.advice.empty() ? "" : result.advice + "\n"));
-  if (report.accuracy) out.set("accuracy", *report.accuracy).list("recommendations", std::move(recommendations));
+  if (report.verb.accuracy)
+    out.set("accuracy", *report.verb.accuracy).list("recommendations", std::move(recommendations));
   for (const std::string& note : study.notes) out.block(note + "\n");
   out.set("settings", settings).set("fronts", fronts);
   return out.set("advice", result.advice).set("notes", study.notes);
 }
 
-/// One row per setting: method, varied values, resolution, times, value, error and assured error.
 Table study_table(const StudyReport& report) {
   const auto& rows = report.result.rows;
   const std::string& quantity = report.study.quantity;
@@ -212,7 +224,6 @@ Table study_table(const StudyReport& report) {
   return table.add("refusal", rows, &StudyRow::refusal);
 }
 
-/// Error against time with the front.
 Plot study_plot(const StudyReport& report) {
   Plot plot{.title = with_symbols(report.study.title),
             .x = {.label = "time of computing, s", .logarithmic = true},
@@ -246,14 +257,6 @@ std::string study_plot_name(const Study& study) {
   return study.name + "_" + study.quantity;
 }
 
-struct StudyVerb {
-  CommonOptions common;
-  std::string file;
-  StudyOptions options;
-  std::optional<double> accuracy;
-};
-
-/// The number that a study measures.
 double measured_number(const Delivery& result, const std::string& measure) {
   const auto number = number_in_json(result.results.json(), measure);
   if (!number)
@@ -317,13 +320,6 @@ Study study_of_file(const std::filesystem::path& path, const CommonOptions& opti
   return study;
 }
 
-std::string command_of(const StudyVerb& verb) {
-  std::string command = fmt::format("equidem study {} --seed {} --threads {} --budget {:g} --rounds {}", verb.file,
-                                    verb.options.seed, thread_count(), verb.options.budget, verb.options.least_rounds);
-  if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
-  return command;
-}
-
 /// Round 0 gives the value, later ones the times.
 struct SampleRow {
   std::int64_t setting = 0, round = 0;
@@ -381,8 +377,8 @@ StudySamples read_samples(const std::filesystem::path& path, const Study& study,
 
 /// Measurements that an earlier run left; none where it begins anew.
 StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const std::string& identity) {
-  if (!verb.common.out || verb.common.overwrite) return {};
-  const auto table = *verb.common.out / "samples.csv";
+  if (!verb.out || verb.overwrite) return {};
+  const auto table = *verb.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
   return read_samples(table, study, identity);
 }
@@ -404,9 +400,7 @@ void check(const StudyVerb& verb) {
 }
 
 void refuse_all_failed(const StudyReport& report) {
-  for (const StudyRow& row : report.result.rows) {
-    if (row.refusal.empty()) return;
-  }
+  if (std::ranges::any_of(report.result.rows, [](const StudyRow& row) { return row.refusal.empty(); })) return;
   computation_failed("none of the settings could be computed",
                      "the first: " + without_full_stop(report.result.rows.front().refusal), "");
 }
@@ -415,12 +409,12 @@ void refuse_unreached(const StudyReport& report) {
   if (!report.recommendation)
     computation_failed("this study has no errors", "no setting has a reference value", "Leave out --accuracy");
   if (report.recommendation->row) return;
-  computation_failed(fmt::format("no setting reaches {:g}", *report.accuracy),
+  computation_failed(fmt::format("no setting reaches {:g}", *report.verb.accuracy),
                      fmt::format("the best one reaches {:.2g}", report.recommendation->best),
                      "Ask for less, or study finer settings");
 }
 
-int dry_run_study(const StudyVerb& verb, const Study& study) {
+void dry_run_study(const StudyVerb& verb, const Study& study) {
   Results results;
   results.set("study", study.name).set("title", study.title).block(study.title + "\n\n");
   results.line("settings").add("number_of_settings", "", study.tasks.size());
@@ -437,53 +431,46 @@ int dry_run_study(const StudyVerb& verb, const Study& study) {
     if (refused && refused->kind() == ErrorKind::interrupted) throw Error(*refused);
   }
   if (most > 0) results.line("memory").add("peak_bytes", "", most, "at the peak", {Shown::bytes});
-  deliver(verb.common, "dry_run", results, {});
-  return 0;
+  deliver(verb, "dry_run", results, {});
 }
 
-int run_verb(const StudyVerb& verb) {
+void run_verb(const StudyVerb& verb) {
   check(verb);
   const Stopwatch watch;
-  set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
-  set_progress_shown(!verb.common.quiet);
-  const Study study = study_of_file(verb.file, verb.common);
-  if (verb.common.dry_run) return dry_run_study(verb, study);
+  set_thread_count(verb.threads > 0 ? verb.threads : 1);
+  set_progress_shown(!verb.quiet);
+  const Study study = study_of_file(verb.file, verb);
+  if (verb.dry_run) return dry_run_study(verb, study);
   const std::string identity = study.checksum(fmt::format("{} seed {} threads {} {}", machine_text(), verb.options.seed,
-                                                          thread_count(), inputs_of_study(verb.file, verb.common)));
-  const auto lock = lock_out(verb.common);
+                                                          thread_count(), inputs_of_study(verb.file, verb)));
+  const auto lock = lock_out(verb);
   StudySamples kept = samples_to_keep(verb, study, identity);
-  const auto& folder = verb.common.out;
+  const auto& folder = verb.out;
   Stopwatch since_saved;
   const auto save = [&](const StudySamples& done) {
     write_samples(*folder / "samples.csv", samples_table(study, done, identity));
   };
   StudySamples samples;
-  std::optional<StudyReport> made;
+  StudyReport report{verb, study, identity};
   const auto plot = std::make_shared<Plot>();
   const auto draw = [name = study_plot_name(study), plot](const CommonOptions& into) {
     if (!plot->series.empty()) write_plot(*into.out, name, *plot, true);
   };
-  const auto write = [&](const CommonOptions& into) { write_csv(*into.out / "study.csv", study_table(*made), true); };
+  const auto write = [&](const CommonOptions& into) { write_csv(*into.out / "study.csv", study_table(report), true); };
   const std::vector<OutputPart> parts{
       {"samples.csv", [&](const CommonOptions& /*into*/) { save(samples); }, OutputPart::folder, {"samples.csv"}},
       {"study.csv", write, OutputPart::folder, {"study.csv"}},
       {study_plot_name(study), draw, OutputPart::page, plot_files(study_plot_name(study))}};
   // Files of an earlier run of the same study are replaced; those of anything else are not.
-  OutputPlan(verb.common, !kept.tasks.empty()).expect_results(parts);
-  SavedOnTheWay saved(verb.common);
+  expect_results(verb, parts, !kept.tasks.empty());
+  SavedOnTheWay saved(verb);
   samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
     if (!folder || since_saved.seconds() < 1) return;
     saved([&] { save(done); });
     since_saved.lap();
   });
 
-  StudyReport& report = made.emplace(StudyReport{.study = study,
-                                                 .result = evaluate(study, samples),
-                                                 .options = verb.options,
-                                                 .command = command_of(verb),
-                                                 .checksum = identity,
-                                                 .accuracy = verb.accuracy,
-                                                 .recommendation = {}});
+  report.result = evaluate(study, samples);
   if (verb.accuracy) report.recommendation = recommend(report.result, *verb.accuracy);
   Results results = study_results(report);
   if (samples.stopped)
@@ -492,14 +479,13 @@ int run_verb(const StudyVerb& verb) {
   StageTimes times;
   times.add("study", watch.seconds());
   *plot = study_plot(report);
-  deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
+  deliver(verb, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
   if (samples.stopped) {
-    throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
+    throw_stopped(verb, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
                   "Run the same command to go on");
   }
   refuse_all_failed(report);
   if (verb.accuracy) refuse_unreached(report);
-  return 0;
 }
 
 }  // namespace
@@ -507,8 +493,8 @@ int run_verb(const StudyVerb& verb) {
 Run declare_study(CLI::App& command) {
   const auto verb = std::make_shared<StudyVerb>();
   command.add_option("STUDY", verb->file, "the study file (.toml)")->type_name("FILE");
-  add_result_options(command, verb->common);
-  command.add_flag("--dry-run", verb->common.dry_run, "say how many settings the study has");
+  add_result_options(command, *verb);
+  command.add_flag("--dry-run", verb->dry_run, "say how many settings the study has");
   command.get_option("--threads")->description("threads; left out: one, so that times are those of one processor");
   command.add_option("--accuracy", verb->accuracy, "name the cheapest setting whose errors are at most X")
       ->check(finite_number())

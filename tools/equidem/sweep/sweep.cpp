@@ -23,7 +23,6 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/memory.hpp"
@@ -43,9 +42,8 @@
 namespace equidem {
 namespace {
 
-struct SweepOptions {
-  CommonOptions common;
-  std::string verb = "solve";
+struct SweepOptions : CommonOptions {
+  std::string swept = "solve";  ///< the verb
   std::vector<KeyOptions> keys;
   std::vector<std::string> seeds;  ///< "1,2,3", "1-5"
   bool side_by_side = false;
@@ -82,7 +80,6 @@ class SweepRun {
   [[nodiscard]] double seconds() const { return watch_.seconds(); }
   /// The points of this run that are done, then those of an earlier one beyond them.
   [[nodiscard]] std::vector<SweepPoint> points() const;
-  /// Write the table into --out, if there is one.
   void save() const;
 
  private:
@@ -135,13 +132,13 @@ SweepPoint point_of(const Sweep& sweep, std::size_t number) {
 VerbRun Sweep::run_of(const std::vector<std::string>& values, const std::vector<std::string>& further) const {
   std::vector<std::string> all = options_of(plan, values, base.document);
   all.insert(all.end(), further.begin(), further.end());
-  if (options.common.seed) all.insert(all.end(), {"--seed", fmt::format("{}", *options.common.seed)});
-  if (options.common.quiet) all.emplace_back("--quiet");
-  return {plan.verb, options.common.case_file, options.common.set, all};
+  if (options.seed) all.insert(all.end(), {"--seed", fmt::format("{}", *options.seed)});
+  if (options.quiet) all.emplace_back("--quiet");
+  return {plan.verb, options.case_file, options.set, all};
 }
 
 SweepRun::SweepRun(const Sweep& sweep, std::vector<SweepPoint> kept)
-    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()), saved_(sweep.options.common) {
+    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()), saved_(sweep.options) {
   std::map<std::vector<std::string>, const SweepPoint*> known;
   for (const SweepPoint& point : kept_)
     if (!point.failed()) known.emplace(point.values, &point);
@@ -187,7 +184,7 @@ std::vector<SweepPoint> SweepRun::points() const {
 }
 
 void SweepRun::save() const {
-  const auto& folder = sweep_.options.common.out;
+  const auto& folder = sweep_.options.out;
   if (folder) write_samples(*folder / Sweep::table_name, sweep_table(sweep_.plan, points()));
 }
 
@@ -213,7 +210,7 @@ void SweepRun::announce(std::size_t at_once) const {
   const double left =
       watch_.seconds() * static_cast<double>(missing_.size() - computed_) / static_cast<double>(at_once);
   if (computed_ == 0 || left < least_told) return;
-  say(sweep_.options.common,
+  say(sweep_.options,
       fmt::format("sweeping {}: {}, {} at a time on {}, about {}", sweep_.plan.names(),
                   counted(std::ssize(missing_), "point"), at_once,
                   at_once == 1 ? counted(thread_count(), "thread") : "one thread each", readable_seconds(left)));
@@ -234,7 +231,7 @@ std::optional<std::pair<std::size_t, Delivery>> first_dry_run(const Sweep& sweep
 
 /// Delivers the number of points and the dry run of the first that can be computed.
 /// \param results of the keys, which the others follow
-int dry_run_sweep(const Sweep& sweep, Results results) {
+void dry_run_sweep(const Sweep& sweep, Results results) {
   const SweepPlan& plan = sweep.plan;
   const SharedAssemblies shared;
   const double resident = resident_memory();
@@ -251,13 +248,7 @@ int dry_run_sweep(const Sweep& sweep, Results results) {
              fmt::format("at the peak, {} at a time", counted(static_cast<long long>(at_once), "point")),
              {Shown::bytes});
   }
-  deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
-  return 0;
-}
-
-/// First line of the case that is written, which tells sweeps by different verbs apart.
-std::string heading_of(const Sweep& sweep) {
-  return fmt::format("# The case of a sweep by 'equidem {}'; what is varied stands at its end.\n", sweep.plan.verb);
+  deliver(sweep.options, "dry_run", results, first ? first->second.times : StageTimes{});
 }
 
 std::vector<std::string> swept_verbs() {
@@ -295,16 +286,13 @@ void refuse_misspelt_ratio(const SweptKey& key) {
                "Write --key ratio");
 }
 
-/// The key of a case that a swept one sets.
-std::string key_set_by(const SweepOptions& options, const SweptKey& key) {
-  return key.name == "ratio" ? "springs.kT" : key.name == SweepPlan::seed ? seed_key(options.common) : key.name;
-}
-
 /// Two keys that set the same one: the second would undo the first.
 void check_different(const SweepOptions& options, const SweepPlan& plan) {
-  std::map<std::string, std::string> setters;
+  std::map<std::string, std::string> setters;  // of keys of the case
   for (const SweptKey& key : plan.keys) {
-    const std::string set = key_set_by(options, key);
+    const std::string set = key.name == "ratio"           ? "springs.kT"
+                            : key.name == SweepPlan::seed ? seed_key(options)
+                                                          : key.name;
     const auto [other, is_new] = setters.emplace(set, key.name);
     if (is_new) continue;
     bad_input(fmt::format("{} and {} are varied", other->second == SweepPlan::seed ? "--seeds" : other->second,
@@ -317,7 +305,7 @@ void check_different(const SweepOptions& options, const SweepPlan& plan) {
 void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
   check_different(options, plan);
   for (const SweptKey& key : plan.keys) {
-    CommonOptions first = options.common;
+    CommonOptions first = options;
     if (key.name != "ratio") refuse_misspelt_ratio(key);
     if (key.name == SweepPlan::seed) {
       first.seed = number_from<std::int64_t>(key.values.front());
@@ -346,13 +334,13 @@ std::string shortened(const std::vector<std::string>& values) {
 
 /// The case, and the files that it or a value of a key names, have to agree for --resume.
 std::string deciding_text(const Sweep& sweep) {
-  const auto folder = sweep.options.common.case_file.parent_path();
+  const auto folder = sweep.options.case_file.parent_path();
   std::vector<std::filesystem::path> named;
   for (const SweptKey& key : sweep.plan.keys)
     if (!key.numeric())
       std::ranges::transform(key.values, std::back_inserter(named), [&](const auto& v) { return folder / v; });
-  return heading_of(sweep) + to_toml(sweep.base.document, *sweep.options.common.out) +
-         note_of_files(sweep.base.document, named);
+  return fmt::format("# The case of a sweep by 'equidem {}'; what is varied stands at its end.\n{}{}", sweep.plan.verb,
+                     to_toml(sweep.base.document, *sweep.options.out), note_of_files(sweep.base.document, named));
 }
 
 /// The case with what is varied as comments.
@@ -364,9 +352,8 @@ std::string text_of_case(const Sweep& sweep) {
   return text;
 }
 
-/// Points of an earlier run of the same sweep.
 std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
-  const auto& out = sweep.options.common.out;
+  const auto& out = sweep.options.out;
   if (!sweep.options.resume) return {};
   if (!out)
     bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
@@ -446,12 +433,12 @@ void add_failures(Results& results, std::span<const SweepPoint> points, std::siz
         "", fmt::format("{} other reasons are in the column message of {}", reasons.size() - most, Sweep::table_name));
 }
 
-int sweep(const SweepOptions& options) {
-  check_verb(options.verb);
-  if (options.common.seed && !options.seeds.empty())
+void sweep(const SweepOptions& options) {
+  check_verb(options.swept);
+  if (options.seed && !options.seeds.empty())
     bad_input("--seed and --seeds exclude each other", "both say which seed a point has", "Leave one of them out");
-  Sweep sweep{options, sweep_plan(options.verb, options.keys, options.seeds, options.side_by_side),
-              read_base(options.verb, options.common)};
+  Sweep sweep{options, sweep_plan(options.swept, options.keys, options.seeds, options.side_by_side),
+              read_base(options.swept, options)};
   sweep.plan.waves = names_of_waves(sweep.base.document);
   check_keys(options, sweep.plan, sweep.base);
   std::optional<SweepRun> computed;
@@ -459,16 +446,15 @@ int sweep(const SweepOptions& options) {
   const auto draw = [&](const CommonOptions& into) {
     if (!computed->stopped()) write_curves(*into.out, sweep.plan, points, options.title.value_or(sweep.base.title));
   };
-  const std::vector<OutputPart> parts{{Sweep::table_name,
-                                       [&](const CommonOptions& /*into*/) { computed->save(); },
-                                       OutputPart::folder,
-                                       {Sweep::table_name, Sweep::case_name}},
-                                      {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
-  OutputPlan(options.common, options.resume).expect_results(parts);
-  if (options.common.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
-  const auto lock = lock_out(options.common);
+  const auto save = [&](const CommonOptions& /*into*/) { computed->save(); };
+  const std::vector<OutputPart> parts{
+      {Sweep::table_name, save, OutputPart::folder, {Sweep::table_name, Sweep::case_name}},
+      {"the curves", draw, OutputPart::folder, files_of_curves(sweep.plan)}};
+  expect_results(options, parts, options.resume);
+  if (options.dry_run) return dry_run_sweep(sweep, results_of_keys(sweep.plan));
+  const auto lock = lock_out(options);
   SweepRun& run = computed.emplace(sweep, points_to_keep(sweep));
-  const auto& folder = options.common.out;
+  const auto& folder = options.out;
   if (folder) write_file(*folder / Sweep::case_name, text_of_case(sweep), true);
   run();
 
@@ -484,19 +470,17 @@ int sweep(const SweepOptions& options) {
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size())).warn();
   StageTimes times;
   times.add("points", run.seconds());
-  deliver(options.common,
+  deliver(options,
           run.stopped() ? "interrupted"
           : all_failed  ? "failed"
                         : "done",
           std::move(results), std::move(times), parts);
   if (run.stopped()) {
-    throw_stopped(options.common, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()),
-                  "Run the same command with --resume to do the rest");
+    throw_stopped(options, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()));
   }
   if (all_failed)
     computation_failed("none of the points could be computed",
                        "the first: " + without_full_stop(points.front().message), "");
-  return 0;
 }
 
 /// The key that an option belongs to: the last one given before it, or the first one where none is.
@@ -504,16 +488,15 @@ KeyOptions& current_key(SweepOptions& options) {
   return options.keys.empty() ? options.keys.emplace_back() : options.keys.back();
 }
 
-void name_key(SweepOptions& options, const std::string& name) {
-  const bool unnamed = options.keys.size() == 1 && options.keys.front().name.empty();
-  (unnamed ? options.keys.front() : options.keys.emplace_back()).name = name;
-}
-
 /// Options that may be repeated, those of each key after it.
 void add_key_options(CLI::App& command, const std::shared_ptr<SweepOptions>& options) {
+  const auto name_key = [options](const std::string& name) {
+    const bool unnamed = options->keys.size() == 1 && options->keys.front().name.empty();
+    (unnamed ? options->keys.front() : options->keys.emplace_back()).name = name;
+  };
   command
       .add_option_function<std::string>(
-          "--key", [options](const std::string& name) { name_key(*options, name); },
+          "--key", name_key,
           "a key to vary, such as springs.kT or assembly.rows; ratio: kT/kN.\nSeveral, each followed by its values: "
           "all "
           "combinations")
@@ -550,9 +533,9 @@ void add_key_options(CLI::App& command, const std::shared_ptr<SweepOptions>& opt
 
 Run declare_sweep(CLI::App& command) {
   const auto options = std::make_shared<SweepOptions>();
-  add_common_options(command, options->common);
+  add_common_options(command, *options);
   command
-      .add_option("--verb", options->verb,
+      .add_option("--verb", options->swept,
                   fmt::format("what is done at each point; solve where left out:\n{}", joined(swept_verbs())))
       ->type_name("VERB");
   add_key_options(command, options);

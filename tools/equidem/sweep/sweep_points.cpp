@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -418,37 +417,25 @@ void add_theory(Plot& plot, const Curve& curve, const std::string& which, const 
 void add_points(Plot& plot, const Curve& curve, const std::string& which, const std::string& value, std::size_t number,
                 bool seeds) {
   const auto label = [&](const std::string& what) { return which.empty() ? what : fmt::format("{}, {}", which, what); };
-  const auto column = [&](const char* name) { return value.empty() ? name : fmt::format("{}_{}", name, value); };
-  const auto add = [&](Series series) {
-    if (!series.x.empty()) plot.series.push_back(std::move(series));
-  };
   const PlotColour colour = curve_colours[number % curve_colours.size()];
-  const Marker marker = curve_markers[number % curve_markers.size()];
   const SeriesStyle alone = curve.theory.empty() ? SeriesStyle::line_with_points : SeriesStyle::points;
+  const auto add = [&](const auto& values, Series series, bool mean = false) {
+    series.marker = curve_markers[number % curve_markers.size()];
+    if (!value.empty()) series.column += "_" + value;
+    if (!values.empty()) plot.series.push_back(series_at(values, std::move(series), mean));
+  };
+  const auto add_open = [&](const auto& values, const std::string& name, PlotColour own, const char* column) {
+    add(values, {.label = label(name), .style = SeriesStyle::points, .colour = own, .filled = false, .column = column});
+  };
   if (seeds) {
-    add(series_at(curve.stable, {.label = label("each seed"),
-                                 .style = SeriesStyle::points,
-                                 .colour = colour,
-                                 .marker = marker,
-                                 .filled = false,
-                                 .column = column("each_seed")}));
-    add(series_at(
-        curve.stable,
-        {.label = label("mean"), .style = alone, .colour = colour, .marker = marker, .column = column("mean")}, true));
+    add_open(curve.stable, "each seed", colour, "each_seed");
+    add(curve.stable, {.label = label("mean"), .style = alone, .colour = colour, .column = "mean"}, true);
   } else {
-    add(series_at(curve.stable, {.label = which.empty() ? "computed" : which,
-                                 .style = alone,
-                                 .colour = colour,
-                                 .marker = marker,
-                                 .column = column("computed")}));
+    add(curve.stable,
+        {.label = which.empty() ? "computed" : which, .style = alone, .colour = colour, .column = "computed"});
   }
-  add(series_at(curve.unstable,
-                {.label = label(which.empty() ? "computed, unstable or not judged" : "unstable or not judged"),
-                 .style = SeriesStyle::points,
-                 .colour = which.empty() ? PlotColour::vermilion : colour,
-                 .marker = marker,
-                 .filled = false,
-                 .column = column("unstable")}));
+  which.empty() ? add_open(curve.unstable, "computed, unstable or not judged", PlotColour::vermilion, "unstable")
+                : add_open(curve.unstable, "unstable or not judged", colour, "unstable");
 }
 
 std::string plot_name_of(const ShownNumber& quantity) {
