@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bonds of colliding bodies, and bonds that stages make, as a user runs them: run_bonds.py PROGRAM SOURCE_FOLDER [unittest
 options]."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drives `equidem calibrate` as a user does: run_calibrate.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import json

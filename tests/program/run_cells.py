@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Periodic cells of colliding bodies, as a user runs them: run_cells.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import unittest

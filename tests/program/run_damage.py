@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Folders that are damaged or in use, and runs that go on in them: run_damage.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import fcntl

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is computed is delivered, whatever fails on the way: run_delivery.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import os

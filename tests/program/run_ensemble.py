@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ensembles of random cells and of packings, as a user does: run_ensemble.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math

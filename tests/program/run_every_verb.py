@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What holds for every verb: run_every_verb.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import os

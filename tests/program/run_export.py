@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem export to LAMMPS and YADE, as a user runs it: run_export.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math

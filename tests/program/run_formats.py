@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of file formats, and files that are read again: run_formats.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem run of discs, ellipses, clumps, bonded pairs and boxes that shake, as a user runs it: run_grains.py PROGRAM
 SOURCE_FOLDER [unittest options]."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem homogenize of a cell or a sample, as a user runs it: run_homogenize.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import json

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs that are killed at random times, and then given the same command again, end with the same bytes.
 

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tests of the laboratory, on less time than the cases take: run_laboratory.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math

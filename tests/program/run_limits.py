@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results that must not pass for sound ones, and input that is too large, too small or out of range: run_limits.py PROGRAM
 SOURCE_FOLDER [unittest options]."""

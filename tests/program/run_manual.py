@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Manual pages, completion and packages: run_manual.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import os

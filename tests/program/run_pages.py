@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts of tools/bench/pages: run_pages.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import argparse

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Usage and solve, as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import json

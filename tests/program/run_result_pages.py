@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page that --out writes beside the files: run_result_pages.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import html.parser

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem run stopped, prolonged, damaged and gone on with: run_resume.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import random

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem run of bonded discs, as a user runs it: run_run.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a grading and a rock to springs, moduli, a static test and a wave: run_sandstone.py PROGRAM SOURCE_FOLDER."""
 import pathlib

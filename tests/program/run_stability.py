@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem stability, and forces at rest from pack to moduli and critical loads, as a user runs them: run_stability.py PROGRAM
 SOURCE_FOLDER [unittest options]."""

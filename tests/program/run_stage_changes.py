@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stages that change bodies, shake, deform a cell or begin from another run's checkpoint, as a user runs them:
 run_stage_changes.py PROGRAM SOURCE_FOLDER [unittest options]."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What servo walls, stages, shaking and cells of colliding bodies refuse, with its line: run_stage_refusals.py PROGRAM
 SOURCE_FOLDER [unittest options]."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem study, and --accuracy of the other verbs, as a user asks for them: run_study.py PROGRAM SOURCE_FOLDER [unittest
 options]."""

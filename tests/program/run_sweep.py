@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem sweep, as a user does: run_sweep.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import resource

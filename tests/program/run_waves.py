@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Standing waves of equidem run: run_waves.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math

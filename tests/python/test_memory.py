@@ -96,7 +96,8 @@ def test_a_folder_of_results_is_computed_again_and_changed_only_by_what_is_asked
 
 def test_a_run_goes_on_with_its_own_assembly_alone(tmp_path):
     def run(block, **options):
-        return eq.Case(assembly=block, springs=SPRINGS, density=2000.0, supports=HELD, loads=[{"group": "right", "force": (1e3, 0)}],
+        return eq.Case(assembly=block, springs=SPRINGS, density=2000.0, supports=HELD,
+                       loads=[{"group": "right", "force": (1e3, 0)}],
                        run={"duration": 1e-5}).run(out=tmp_path / "out", **options)
     run(hexagonal(5, 5))
     run(hexagonal(5, 5), resume=True)

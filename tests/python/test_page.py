@@ -17,7 +17,8 @@ VERBS = {
     "calibrate": (lambda: eq.calibrate(CELL, young_modulus=1e9, poisson_ratio=0.1), "kN"),
     "pack": (lambda: eq.pack({"grains": 30, "box": [0.1, 0.1], "radii": {"smallest": 4e-3, "largest": 6e-3}, "method": "growth",
                               "overlap": 1e-3, "sides": "periodic"}, (1e8, 0.5e8)), "solid_fraction"),
-    "run": (lambda: eq.run(BLOCK, SPRINGS, density=2000.0, loads=[{"group": "right", "force": (1.0, 0.0)}], run={"duration": 1e-4}), None),
+    "run": (lambda: eq.run(BLOCK, SPRINGS, density=2000.0, loads=[{"group": "right", "force": (1.0, 0.0)}],
+                           run={"duration": 1e-4}), None),
     "quasistatic": (NOTCH.quasistatic, None),
 }
 

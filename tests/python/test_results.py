@@ -152,7 +152,8 @@ def test_a_verb_says_how_long_it_took():
 
 
 def test_refusals_of_an_ensemble_do_not_name_cases_in_memory():
-    packing = {**PACKING, "grains": 100, "solid_fraction": 0.84, "gap_tolerance": 0.05, "radii": {"smallest": 0.5e-3, "largest": 1e-3}}
+    packing = {**PACKING, "grains": 100, "solid_fraction": 0.84, "gap_tolerance": 0.05,
+               "radii": {"smallest": 0.5e-3, "largest": 1e-3}}
     result = eq.Case(assembly={"kind": "packing"}, packing=packing, springs=SPRINGS,
                      ensemble={"discs": [400], "samples": 5}).homogenize()
     print(result.report)
