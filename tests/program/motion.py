@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cases of motion in time, for the tests of equidem run."""
+"""Cases of motion in time, and what equidem run writes of them."""
 import csv
-import json
 import math
 import unittest
 import xml.etree.ElementTree
@@ -14,7 +13,7 @@ try:
 except ImportError:
     vtkXMLPolyDataReader = None
 
-from program import CASES, ProgramTest, equidem, parse_json
+from program import CASES, NO_PICTURE, ProgramTest
 
 CORNER, PULSE, SHAKE, REST = (CASES / f"run_{name}.toml" for name in ("corner", "pulse", "shake", "tension"))
 KN, DENSITY, RADIUS = 1e9, 2650.0, 0.005
@@ -26,15 +25,6 @@ def table(path):
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     return dict(zip(rows[0], numpy.array(rows[1:], dtype=float).T))
-
-
-def files_of(out):
-    """Content of every file of a folder, by its path there."""
-    return {str(path.relative_to(out)): path.read_bytes() for path in sorted(out.rglob("*")) if path.is_file()}
-
-
-def frame_files(out):
-    return {name: content for name, content in files_of(out).items() if name.startswith("frames")}
 
 
 needs_vtk = unittest.skipIf(vtkXMLPolyDataReader is None, "the Python module of VTK (python3-vtk9) is missing")
@@ -82,22 +72,17 @@ def sums_of_forces(contacts, bodies):
 
 class RunTest(ProgramTest):
     def run_case(self, case, *options):
-        return parse_json(self.check_done(equidem("run", case, "--threads", 1, "--json", "-", *options)).stdout)
+        return self.result("run", case, "--threads", 1, *options)
 
-    def write_case(self, discs, contacts, text, cell=None):
+    def bonded_case(self, discs, contacts, text):
         """A case of bonded discs of one size, and a group d0, d1, ... for each."""
-        (self.folder / "assembly.json").write_text(json.dumps(
-            {"schema": "equidem-assembly/1", "cell": cell, "discs": [[x, y, RADIUS] for x, y in discs],
-             "contacts": contacts}))
+        self.write_assembly("assembly.json", discs=[[x, y, RADIUS] for x, y in discs], contacts=contacts)
         groups = "".join(f'[[group]]\nname = "d{k}"\ndiscs = [{k}]\n' for k in range(len(discs)))
-        case = self.folder / "case.toml"
-        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "assembly.json"\n'
-                        f'density = {DENSITY}\n{groups}{text}')
-        return case
+        return self.of_file("assembly.json", f"density = {DENSITY}\n{groups}{text}")
 
     def history(self, case, *options):
         out = self.folder / "history"
-        self.run_case(case, "--out", out, "--overwrite", "--set", "output.files=['csv', 'vtk']", *options)
+        self.run_case(case, "--out", out, "--overwrite", NO_PICTURE, *options)
         return table(out / "history.csv")
 
     def check_near(self, computed, expected, tolerance):
@@ -105,3 +90,9 @@ class RunTest(ProgramTest):
         size, error = numpy.abs(expected).max(), numpy.abs(computed - expected).max()
         self.assertGreater(size, 0)
         self.assertLessEqual(error, tolerance * size, f"{error / size:.2e}")
+
+    def go_on_from(self, out, *stages):
+        """Each name of a stage, with the checkpoint of its end as that of the run."""
+        for name in stages:
+            (out / "run.checkpoint.h5").write_bytes((out / f"run.{name}.checkpoint.h5").read_bytes())
+            yield name

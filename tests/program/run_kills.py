@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs that are killed at random times, and then given the same command again, end with the same bytes.
 
@@ -14,49 +13,35 @@ import pathlib
 import random
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 
 import h5py
 
-# In result.json, what depends on the machine, the clock and the name of the folder, or tells of the part of the run since it
-# was resumed.
-VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "loop_bytes", "springs_file",
-           "sweeps", "rebuilds", "seconds", "threads")
+from program import CASES, CELL, ENSEMBLE, NO_PICTURE, STUDY, TENSION, VARYING, equidem, files_of, started
 
-
-def jobs_of(cases):
-    """Name -> (program or None, arguments, file from which --resume goes on or None)."""
-    no_picture = ("--set", "output.files=['csv', 'vtk']")
-    often = (*no_picture, "--set", "output.checkpoint_interval=0.02")
-    support = "support=[{group = \"bottom\", ux = 0.0, uy = 0.0}]"
-    load = "load=[{group = \"top\", kind = \"total\", force = [0.0, 1.0]}]"
-    jobs = {
-        "run, bonded discs": (None, ["run", cases / "run_shake.toml", *often, "--set", "run.duration=0.01", "--set",
-                                     "run.step_rule=bound"], "run.checkpoint.h5"),
-        "run, colliding bodies": (None, ["run", cases / "grains_shaken.toml", *often, "--set", "shaking.start=0.02", "--set",
-                                         "run.duration=0.1", "--set", "output.probe_interval=4e-3"], "run.checkpoint.h5"),
-        "quasistatic, frictional contacts": (None, ["quasistatic", cases / "frictional_notch.toml", *often, "--set",
-                                                  "quasistatic.max_events=200", "--set", "quasistatic.frame_every=30"],
-                                           "quasistatic.checkpoint.h5"),
-        "pack, growth": (None, ["pack", cases / "pack_jammed.toml", "--set", "packing.grains=150"], None),
-        "pack, falling": (None, ["pack", cases / "pack_soil.toml", "--set", "packing.grains=60", "--set",
-                                 "packing.box=[0.15, 1.0]"], None),
-        "solve": (None, ["solve", cases / "abe1996_fig6.toml", "--set", "assembly.columns=81", "--set", "assembly.rows=81"],
-                  None),
-        "stability": (None, ["stability", cases / "random_cell.toml"], None),
-        "homogenize": (None, ["homogenize", cases / "random_cell.toml", "--set", "assembly.discs=3000"], None),
-        "homogenize, ensemble": (None, ["homogenize", cases / "ensemble.toml", "--set", "ensemble.discs=[50, 100]", "--set",
-                                        "ensemble.samples=60"], "samples.csv"),
-        "homogenize --accuracy": (None, ["homogenize", cases / "random_cell.toml", "--accuracy", "0.01"], None),
-        "sweep": (None, ["sweep", cases / "abe1996_fig6.toml", "--key", "ratio", "--values",
-                         "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1", "--set", "test=none", "--set", support, "--set", load], "sweep.csv"),
-        "calibrate": (None, ["calibrate", cases / "calibrate_random.toml"], None),
-        "study": (None, ["study", cases.parent / "studies" / "abe_lattice.toml", "--rounds", "3", "--budget", "0"], None),
-    }
-    return jobs
+OFTEN = (NO_PICTURE, "output.checkpoint_interval=0.02")
+SUPPORT, LOAD = 'support=[{group = "bottom", ux = 0.0, uy = 0.0}]', 'load=[{group = "top", kind = "total", force = [0.0, 1.0]}]'
+# Name: command, and the file from which --resume goes on, or None
+JOBS = {
+    "run, bonded discs": (("run", CASES / "run_shake.toml", *OFTEN, "run.duration=0.01", "run.step_rule=bound"), "run.checkpoint.h5"),
+    "run, colliding bodies": (("run", CASES / "grains_shaken.toml", *OFTEN, "shaking.start=0.02", "run.duration=0.1",
+                               "output.probe_interval=4e-3"), "run.checkpoint.h5"),
+    "quasistatic, frictional contacts": (("quasistatic", CASES / "frictional_notch.toml", *OFTEN, "quasistatic.max_events=200",
+                                          "quasistatic.frame_every=30"), "quasistatic.checkpoint.h5"),
+    "pack, growth": (("pack", CASES / "pack_jammed.toml", "packing.grains=150"), None),
+    "pack, falling": (("pack", CASES / "pack_soil.toml", "packing.grains=60", "packing.box=[0.15, 1.0]"), None),
+    "solve": (("solve", TENSION, "assembly.columns=81", "assembly.rows=81"), None),
+    "stability": (("stability", CELL), None),
+    "homogenize": (("homogenize", CELL, "assembly.discs=3000"), None),
+    "homogenize, ensemble": (("homogenize", ENSEMBLE, "ensemble.discs=[50, 100]", "ensemble.samples=60"), "samples.csv"),
+    "homogenize --accuracy": (("homogenize", CELL, "--accuracy", "0.01"), None),
+    "sweep": (("sweep", TENSION, "--key", "ratio", "--values", "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1", "test=none",
+               SUPPORT, LOAD), "sweep.csv"),
+    "calibrate": (("calibrate", CASES / "calibrate_random.toml"), None),
+    "study": (("study", STUDY, "--rounds", 3, "--budget", 0), None),
+}
 
 
 def lasting(value):
@@ -71,56 +56,49 @@ def lasting(value):
 def datasets(path):
     found = {}
     with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update({name: item[()].tobytes()})
-                        if isinstance(item, h5py.Dataset) else None)
+        file.visititems(lambda name, item: found.update({name: item[()].tobytes()}) if isinstance(item, h5py.Dataset) else None)
     return found
 
 
+def contents(name, out):
+    """Bytes of every file; of JSON what does not vary; of a page whether it is whole; of a checkpoint all arrays but the counters of
+    work (the neighbours are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
+    files = files_of(out)
+    for path in files:
+        if path == "result.json":
+            files[path] = lasting(json.loads(files[path]))
+        elif path == "index.html":  # it tells times; the film is among the arrays of the checkpoint
+            files[path] = files[path].endswith(b"</html>\n")
+        elif path.endswith(".checkpoint.h5"):
+            files[path] = {key: value for key, value in datasets(out / path).items() if key != "counters"}
+    if name == "study":
+        return {"files": sorted(files), "errors": [[row["setting"], row["errors"]] for row in files["result.json"]["settings"]]}
+    return files
+
+
 class Killing:
-    def __init__(self, arguments, folder):
-        self.program = arguments.program
-        self.jobs = jobs_of(pathlib.Path(arguments.source) / "data" / "cases")
-        self.random = random.Random(arguments.seed)
+    def __init__(self, seed, folder):
+        self.random = random.Random(seed)
         self.folder = folder
         self.findings = []
 
     def command(self, name, out, threads=1):
-        program, given, resumed_from = self.jobs[name]
-        command = [program or self.program, *map(str, given), "--out", str(out), "--threads", str(threads), "--quiet"]
-        if given[0] == "study":
-            return command  # a study goes on of itself
-        if resumed_from and (out / resumed_from).exists():
-            return [*command, "--resume"]
-        return [*command, "--overwrite"]
+        given, resumed_from = JOBS[name]
+        again = "--resume" if resumed_from and (out / resumed_from).exists() else "--overwrite"
+        return [*given, "--out", out, "--threads", threads, "--quiet",
+                *([] if name == "study" else [again])]  # a study goes on of itself
 
     def whole(self, name, threads=1):
-        out = self.folder / f"whole_{list(self.jobs).index(name)}_{threads}"
+        out = self.folder / f"whole_{list(JOBS).index(name)}_{threads}"
         shutil.rmtree(out, ignore_errors=True)
         began = time.monotonic()
-        done = subprocess.run(self.command(name, out, threads), capture_output=True, text=True, timeout=600, check=False)
+        done = equidem(*self.command(name, out, threads), timeout=600)
         if done.returncode != 0:
             raise SystemExit(f"{name}: {done.stderr}")
         return out, time.monotonic() - began
 
-    def contents(self, name, out):
-        """Bytes of every file; of JSON what does not vary; of a page whether it is whole; of a checkpoint all arrays but the counters of work (the neighbours
-        are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
-        files = {}
-        for path in sorted(path for path in out.rglob("*") if path.is_file()):
-            files[str(path.relative_to(out))] = path.read_bytes()
-            if path.name == "result.json":
-                files[path.name] = lasting(json.loads(files[path.name]))
-            elif path.name == "index.html":  # it tells times; the film is among the arrays of the checkpoint
-                files[path.name] = files[path.name].endswith(b"</html>\n")
-            elif path.name.endswith(".checkpoint.h5"):
-                files[path.name] = {key: value for key, value in datasets(path).items() if key != "counters"}
-        if name == "study":
-            result = files["result.json"]
-            return {"files": sorted(files), "errors": [[row["setting"], row["errors"]] for row in result["settings"]]}
-        return files
-
     def compare(self, name, wanted, found, what):
-        a, b = self.contents(name, wanted), self.contents(name, found)
+        a, b = contents(name, wanted), contents(name, found)
         different = sorted(set(a) ^ set(b)) or [file for file in a if a[file] != b[file]]
         for file in different:
             keys = ""
@@ -134,7 +112,7 @@ class Killing:
 
     def kill_once(self, name, out, seconds, how):
         """Whether the program was still at work when it was killed."""
-        with subprocess.Popen(self.command(name, out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        with started(*self.command(name, out)) as running:
             time.sleep(self.random.uniform(0, 1) * seconds)
             running.send_signal(how)
             errors = running.communicate(timeout=120)[1]
@@ -155,7 +133,7 @@ class Killing:
                     done += 1
                 else:
                     idle += 1
-            again = subprocess.run(self.command(name, out), capture_output=True, text=True, timeout=600, check=False)
+            again = equidem(*self.command(name, out), timeout=600)
             if again.returncode != 0:
                 self.find(f"{name}, again: exit code {again.returncode}: {again.stderr.strip()}")
                 continue
@@ -168,18 +146,16 @@ class Killing:
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("program")
-    parser.add_argument("source")
     parser.add_argument("--kills", type=int, default=12)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", help="a word of the names of the jobs that are killed")
+    parser.add_argument("--only", help="a word of the names of the jobs that are killed", default="")
     parser.add_argument("--report")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="equidem_test_") as folder:
-        killing = Killing(arguments, pathlib.Path(folder))
-        names = [name for name in killing.jobs if (arguments.only or "") in name]
+        killing = Killing(arguments.seed, pathlib.Path(folder))
+        names = [name for name in JOBS if arguments.only in name]
         if arguments.kills < len(names):  # a short run: what can be resumed first
-            names.sort(key=lambda name: killing.jobs[name][2] is None)
+            names.sort(key=lambda name: JOBS[name][1] is None)
         kills = {name: 0 for name in names}
         for k in range(arguments.kills):
             kills[names[k % len(names)]] += 1

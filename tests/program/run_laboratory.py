@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tests of the laboratory, on less time than the cases take: run_laboratory.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import math
@@ -8,20 +7,19 @@ import unittest
 import numpy
 
 from motion import RunTest
-from program import CASES, PROGRAM, SOURCE, equidem, parse_json
+from program import CASES, NO_PICTURE, PROGRAM, SOURCE
 
 sys.path.insert(0, str(SOURCE / "tools" / "bench" / "laboratory"))
 import at_rest  # noqa: E402
 import readings  # noqa: E402
 import samples  # noqa: E402
 
-QUIET = ("--set", "output.files=['csv', 'vtk']")
 
 
 class Laboratory(RunTest):
     def run_test(self, name, *options):
         out = self.folder / "out"
-        return self.run_case(CASES / f"grains_{name}.toml", "--out", out, "--overwrite", *QUIET, *options), out
+        return self.run_case(CASES / f"grains_{name}.toml", "--out", out, "--overwrite", NO_PICTURE, *options), out
 
 
 class Beam(Laboratory):
@@ -38,8 +36,8 @@ class Beam(Laboratory):
 
     def test_the_beam_breaks_in_its_middle_where_the_moment_reaches_its_strength(self):
         """6 M/w = tension, M = P (L/2 - l/2)/2: P = 2/0.095 (4e3 0.01/6) = 140.4 N/m; the way is P over the stiffness of the row."""
-        result, out = self.run_test("bonded_beam", "--set", "wall.2.displacement=5e-4", "--set", "run.duration=0.1", "--set",
-                                    "output.probe_interval=5e-5", "--set", "run.steps_per_contact=10")
+        result, out = self.run_test("bonded_beam", "wall.2.displacement=5e-4", "run.duration=0.1",
+                                    "output.probe_interval=5e-5", "run.steps_per_contact=10")
         breaks = readings.rows_of_breaks(out)
         self.assertTrue({(one["bond"], one["mode"]) for one in breaks} <= {("9", "bending"), ("10", "bending")}, breaks)
         self.assertGreater(len(breaks), 0)
@@ -55,16 +53,16 @@ class Beam(Laboratory):
 
 class Rock(Laboratory):
     def moduli(self, *options):
-        done = self.check_done(equidem("homogenize", CASES / "lab_rock.toml", "--json", "-", "--quiet", *options))
-        return [parse_json(done.stdout)[name]["plane_stress"] for name in ("young_modulus", "poisson_ratio")]
+        result = self.result("homogenize", CASES / "lab_rock.toml", *options)
+        return [result[name]["plane_stress"] for name in ("young_modulus", "poisson_ratio")]
 
     def test_the_gauges_of_the_unconfined_test_read_the_moduli_of_the_rock_inside(self):
         """`homogenize` of the sample counts all of its area, and its edge, half a diameter at each side, lacks the bonds of discs outside:
         it is softer than the inside by that share. A periodic cell has no edge. The gauges read between the two. Cells of this size scatter by
         1.7 % in E, gauges by 0.008 in nu (data/laboratory.md): three times that is allowed."""
-        _, out = self.run_test("unconfined", "--set", "run.duration=2.4e-3", "--set", "strength=none")
+        _, out = self.run_test("unconfined", "run.duration=2.4e-3", "strength=none")
         young, ratio = self.moduli()
-        cell, cell_ratio = self.moduli("--set", "packing.sides=periodic")
+        cell, cell_ratio = self.moduli("packing.sides=periodic")
         read = readings.elastic_gauges(out, 0.04)
         diameter = 2 * numpy.mean(readings.columns_without_text(CASES / "lab_rock.csv", ("radius",))["radius"])
         edge = diameter / 0.04 + diameter / 0.08
@@ -79,10 +77,10 @@ class Rock(Laboratory):
         """Around the disc: -P h over the area along, h being the distance of the plates, and nothing across. At the centre: that of
         Hondros (1959) on arcs; four samples of this size scatter by 0.04 across and 0.09 along (data/laboratory.md), here 2.5 times that."""
         box = 0.03
-        _, out = self.run_test("brazilian", "--set", "run.duration=3e-3", "--set", "strength=none", "--set", "output.probe_interval=2e-5")
+        _, out = self.run_test("brazilian", "run.duration=3e-3", "strength=none", "output.probe_interval=2e-5")
         centre = readings.stress_at_the_centre(out, 0.05)
-        _, out = self.run_test("brazilian", "--set", "run.duration=3e-3", "--set", "strength=none", "--set",
-                               f"probe.0.box=[{-box},{-box},{box},{box}]", "--set", "output.probe_interval=2e-5")
+        _, out = self.run_test("brazilian", "run.duration=3e-3", "strength=none",
+                               f"probe.0.box=[{-box},{-box},{box},{box}]", "output.probe_interval=2e-5")
         whole = readings.stress_at_the_centre(out, 0.05)
         height = 2 * 0.025 * math.cos(samples.HALF_ANGLE)
         along = -height * math.pi * 0.05 / 2 / (2 * box) ** 2
@@ -97,7 +95,7 @@ class Rock(Laboratory):
 class Heaps(Laboratory):
     def test_a_hopper_counts_what_has_left_it(self):
         """All bodies are above the gate before, and as many are missing above it as are counted below."""
-        _, out = self.run_test("hopper", "--set", "stage.1.duration=0.12")
+        _, out = self.run_test("hopper", "stage.1.duration=0.12")
         read = readings.history(out)
         counted = read["out_inside"]
         self.assertEqual(counted[0], 0)
@@ -111,7 +109,7 @@ class Heaps(Laboratory):
         law 2.8 to 3.5 times. About 330 and 760 bodies in the time that is read, of which 5 % is twice the scatter of such counts."""
         d, rates, openings = 0.004, [], (0.040, 0.064)
         for opening in openings:
-            _, out = self.run_test("hopper", "--set", "stage.1.duration=0.4", "--set", f"stage.1.wall.1.end=[{0.075 - opening / 2},0.0]", "--set",
+            _, out = self.run_test("hopper", "stage.1.duration=0.4", f"stage.1.wall.1.end=[{0.075 - opening / 2},0.0]",
                                    f"stage.1.wall.2.point=[{0.075 + opening / 2},0.0]")
             read = readings.history(out, "flow")
             late = read["time_s"] > read["time_s"][0] + 0.15
@@ -121,26 +119,18 @@ class Heaps(Laboratory):
             self.assertGreater(rates[1] / rates[0], 0.95 * least)
             self.assertLess(rates[1] / rates[0], 1.05 * most)
 
-    def test_a_heap_of_rougher_grains_is_steeper(self):
-        """Friction 0.05 and 0.5: slopes of the same column, apart by more than three times the errors of both lines."""
-        slopes = []
-        for friction in (0.05, 0.5):
-            _, out = self.run_test("repose", "--set", f"collisions.friction={friction}", "--set", "stage.1.duration=1.0")
-            slopes.append(readings.slope(out))
-        with self.subTest(slopes=slopes):
-            self.assertGreater(slopes[1]["angle"] - slopes[0]["angle"], 3 * math.hypot(slopes[0]["error"], slopes[1]["error"]))
-
-    def test_a_heap_whose_grains_resist_rolling_is_steeper(self):
-        """Rolling friction 0, 0.1 and 0.4 of discs with friction 0.5: each slope steeper than the one before by more than the errors of
-        both lines."""
-        slopes = []
-        for rolling in (0.0, 0.1, 0.4):
-            damped = ("--set", "collisions.rolling_damping=0.3") if rolling > 0 else ()
-            _, out = self.run_test("repose", "--set", f"collisions.rolling_friction={rolling}", *damped, "--set", "stage.1.duration=1.0")
-            slopes.append(readings.slope(out))
-        with self.subTest(slopes=slopes):
-            for less, more in zip(slopes, slopes[1:]):
-                self.assertGreater(more["angle"] - less["angle"], math.hypot(less["error"], more["error"]))
+    def test_a_heap_of_rougher_grains_or_of_such_as_resist_rolling_is_steeper(self):
+        """Friction 0.05 and 0.5: apart by more than three times the errors of both lines; rolling friction 0, 0.1 and 0.4 of discs with
+        friction 0.5: each slope steeper than the one before by more than the errors of both lines."""
+        for key, values, times in (("friction", (0.05, 0.5), 3), ("rolling_friction", (0.0, 0.1, 0.4), 1)):
+            slopes = []
+            for value in values:
+                damped = ("collisions.rolling_damping=0.3",) if "rolling" in key and value > 0 else ()
+                _, out = self.run_test("repose", f"collisions.{key}={value}", *damped, "stage.1.duration=1.0")
+                slopes.append(readings.slope(out))
+            with self.subTest(key=key, slopes=slopes):
+                for less, more in zip(slopes, slopes[1:]):
+                    self.assertGreater(more["angle"] - less["angle"], times * math.hypot(less["error"], more["error"]))
 
     def test_a_slope_of_a_known_angle_is_read(self):
         with open(self.folder / "grains.csv", "w", encoding="utf-8") as file:
@@ -156,7 +146,7 @@ class Heaps(Laboratory):
 class Sand(Laboratory):
     def test_sand_is_consolidated_without_running_past_its_stress_by_a_twentieth(self):
         """The walls choose their speed so that a disc pushes them by 1/20 of their force, and come in so slowly that waves do not exceed it."""
-        result, _ = self.run_test("biaxial", "--set", "stage.2.until.strain=1e-8")
+        result, _ = self.run_test("biaxial", "stage.2.until.strain=1e-8")
         servos = [servo for servo in result["servos"] if servo["stage"] == "consolidate"]
         with self.subTest(servos=servos):
             self.assertEqual([servo["reached"] for servo in servos], [True, True])
@@ -168,13 +158,13 @@ class Sand(Laboratory):
         """Statics of the consolidated packing between the same plates, with the forces that it carries. Contacts part and slip from the start
         on, those first that carry least: up to a strain of 3e-5, a thirtieth of that of the mean overlap, by less than 1 %."""
         held = self.folder / "held"
-        self.run_case(CASES / "grains_biaxial.toml", "--out", held, *QUIET, "--set", "stage.2.until.strain=1e-8")
-        _, out = self.run_test("biaxial", "--set", "stage.2.wall.0.velocity=[0.0,1e-4]", "--set", "stage.2.wall.1.velocity=[0.0,-1e-4]", "--set",
-                               "stage.2.until.strain=3e-5", "--set", "output.probe_interval=2e-4")
+        self.run_case(CASES / "grains_biaxial.toml", "--out", held, NO_PICTURE, "stage.2.until.strain=1e-8")
+        _, out = self.run_test("biaxial", "stage.2.wall.0.velocity=[0.0,1e-4]", "stage.2.wall.1.velocity=[0.0,-1e-4]",
+                               "stage.2.until.strain=3e-5", "output.probe_interval=2e-4")
         found = readings.small_strain(out, 1e-5, 3e-5)
 
         def call(command):
-            return self.check_done(equidem(*command[1:])).stdout
+            return self.done(*command[1:]).stdout
 
         packing = at_rest.Packing(held)
         young, ratio = packing.between_plates("equidem", call)
@@ -191,7 +181,7 @@ class Sand(Laboratory):
         fall, fall_of_ratio, samples_taken = 0, 0, 8
         for seed in range(1, 1 + samples_taken):
             samples.write(self.folder, f"sand{seed}", samples.sand(PROGRAM, seed))
-            result, out = self.run_test("shear_box", "--set", "run.steps_per_contact=12", "--set", f'grains.path="{self.folder}/sand{seed}.csv"')
+            result, out = self.run_test("shear_box", "run.steps_per_contact=12", f'grains.path="{self.folder}/sand{seed}.csv"')
             self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["met its end"] * 3)
             (first, rise), (last, late_rise) = readings.taylor(out)
             fall += ((first - rise) - (last - late_rise)) / samples_taken

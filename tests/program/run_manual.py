@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Manual pages, completion and packages: run_manual.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import os
@@ -30,11 +29,11 @@ def shown(page):
 
 class Manual(ProgramTest):
     def page(self, name):
-        return self.check_done(equidem("help", "man", *([name] if name else []))).stdout
+        return self.done("help", "man", *([name] if name else [])).stdout
 
     def test_every_option_of_a_verb_is_on_its_page(self):
         for verb in VERBS:
-            options = re.findall(r"^  (?:-\w,)?(--[\w-]+)", self.check_done(equidem("help", verb)).stdout, re.MULTILINE)
+            options = re.findall(r"^  (?:-\w,)?(--[\w-]+)", self.done("help", verb).stdout, re.MULTILINE)
             self.assertIn("--out", options)
             named = re.findall(r"^\.TP\n(?:-\w, )?(--[\w-]+)", shown(self.page(verb)), re.MULTILINE)
             self.assertEqual(named, options)
@@ -69,40 +68,40 @@ class Completion(ProgramTest):
 
     def completed(self, *words):
         """What bash offers for the last of the words, which are split as bash does it."""
-        script = self.folder / "completion"
-        script.write_text(self.check_done(equidem("help", "completion", "bash")).stdout)
-        asked = f'. "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _equidem; printf "%s\\n" "${{COMPREPLY[@]}}"'
-        done = subprocess.run(["bash", "-c", asked, "bash", script, "equidem", *words], capture_output=True, text=True,
-                              cwd=self.folder, env={"PATH": f"{self.folder}:{os.environ['PATH']}"}, timeout=60)
-        return done.stdout.split()
+        asked = '. "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _equidem; printf "%s\\n" "${COMPREPLY[@]}"'
+        return self.bash("-c", asked, "bash", self.script(), "equidem", *words).stdout.split()
+
+    def script(self):
+        return self.write(self.done("help", "completion", "bash").stdout, "completion")
+
+    def bash(self, *words):
+        done = subprocess.run(["bash", *words], capture_output=True, text=True, cwd=self.folder, timeout=60,
+                              env={"PATH": f"{self.folder}:{os.environ['PATH']}"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
 
     def test_verbs_options_keys_and_words(self):
-        self.assertEqual(self.completed("st"), ["stability", "study"])
-        self.assertEqual(self.completed("help", "man", "so"), ["solve"])
-        self.assertEqual(self.completed("solve", "--re"), ["--require-stable"])
-        self.assertIn("--accuracy", self.completed("solve", "case.toml", "--"))
+        for words, offered in ((("st",), ["stability", "study"]), (("help", "man", "so"), ["solve"]),
+                               (("solve", "--re"), ["--require-stable"]), (("solve", "--set", "springs.kT"), ["springs.kT="]),
+                               (("sweep", "--key", "springs.kT"), ["springs.kT"]), (("sweep", "--verb", "ho"), ["homogenize"]),
+                               (("solve", "compl"), ["completion"]), (("solve", "--threads", ""), [])):  # completion: a file
+            self.assertEqual(self.completed(*words), offered)
+        for words, offered in ((("solve", "case.toml", "--"), "--accuracy"),
+                               (("solve", "--set", "assembly.kind", "=", "h"), "hexagonal"),
+                               (("solve", "--set", "load.0."), "load.0.force=")):
+            self.assertIn(offered, self.completed(*words))
         self.assertNotIn("--accuracy", self.completed("pack", "--"))
-        self.assertEqual(self.completed("solve", "--set", "springs.kT"), ["springs.kT="])
-        self.assertEqual(self.completed("sweep", "--key", "springs.kT"), ["springs.kT"])
-        self.assertIn("hexagonal", self.completed("solve", "--set", "assembly.kind", "=", "h"))
-        self.assertIn("load.0.force=", self.completed("solve", "--set", "load.0."))
-        self.assertEqual(self.completed("sweep", "--verb", "ho"), ["homogenize"])
-        self.assertEqual(self.completed("solve", "compl"), ["completion"])  # a file
-        self.assertEqual(self.completed("solve", "--threads", ""), [])
 
     def test_every_key_that_is_offered_is_known(self):
         keys = self.completed("sweep", "--key", "")
         self.assertEqual(len(keys), len(set(keys)))
         self.assertGreater(len(keys), 100)
-        text = self.check_done(equidem("help", "case")).stdout
+        text = self.done("help", "case").stdout
         for key in keys:
             self.assertRegex(text, rf"(?m)^  (?:[\w.]+, )*(?:\w+\.)*{re.escape(key.split('.')[-1])}\b", key)
 
     def test_bash_can_read_its_script(self):
-        script = self.folder / "bash"
-        script.write_text(self.check_done(equidem("help", "completion", "bash")).stdout)
-        done = subprocess.run(["bash", "-n", script], capture_output=True, text=True, timeout=60)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(self.bash("-n", self.script()).stderr, "")
 
 
 class Packages(unittest.TestCase):

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The parts of tools/bench/pages: run_pages.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import argparse
@@ -32,7 +31,8 @@ class Pages(ProgramTest):
         scenes = [(name, result, time) for name, time in zip(names, (1, 2, 6, 3, 9))]
         bases = {name: (ns, base) for name, _, ns, base in effects.compared(scenes)}
         self.assertEqual(bases, {"plain": (1, None), "+ x": (2, 1), "+ y": (6, 2), "or z, without y": (3, 2), "+ w": (9, 6)})
-        self.assertIn(["p", "or z, without y", "2", "100", "3", "3.0", "+50 %", "3.00"], effects.chain_rows("p", scenes, lambda found: found["e"]))
+        self.assertIn(["p", "or z, without y", "2", "100", "3", "3.0", "+50 %", "3.00"],
+                      effects.chain_rows("p", scenes, lambda found: found["e"]))
 
     def test_scenes_of_effects_differ_each_in_one_table_from_that_before(self):
         for _, make in effects.PROBLEMS:

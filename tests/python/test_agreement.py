@@ -3,7 +3,6 @@
 
 import json
 import os
-import pathlib
 import subprocess
 
 import numpy as np
@@ -11,36 +10,27 @@ import pytest
 
 import dense
 import equidem as eq
+from scenes import CASES, HELD, hexagonal
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["EQUIDEM_PROGRAM"]
+SIZES = {"smallest": 3e-3, "largest": 6e-3}
 
 BLOCKS = {
-    "hexagonal": lambda: eq.hexagonal(columns=6, rows=5, radius=5e-3),
+    "hexagonal": lambda **more: hexagonal(6, 5, 5e-3, **more),
     "square": lambda: eq.square(columns=5, rows=4, radius=5e-3),
-    "delaunay": lambda: eq.delaunay(discs=40, radius=5e-3, seed=3),
-    "polydisperse": lambda: eq.delaunay(discs=40, radii={"smallest": 3e-3, "largest": 6e-3}, seed=5),
+    "delaunay": lambda **more: eq.delaunay(discs=40, radius=5e-3, seed=3, **more),
+    "polydisperse": lambda **more: eq.delaunay(discs=40, radii=SIZES, seed=5, **more),
 }
-CELLS = {
-    "hexagonal": lambda: eq.hexagonal(columns=4, rows=4, radius=5e-3, periodic=True),
-    "delaunay": lambda: eq.delaunay(discs=40, radius=5e-3, seed=3, periodic=True),
-    "polydisperse": lambda: eq.delaunay(discs=40, radii={"smallest": 3e-3, "largest": 6e-3}, seed=5, periodic=True),
-}
+CELLS = {kind: lambda kind=kind: BLOCKS[kind](periodic=True) for kind in ("delaunay", "polydisperse")}
+CELLS["hexagonal"] = lambda: hexagonal(4, 4, 5e-3, periodic=True)
 KN, KT = 1e9, 0.3e9
 
 
-@pytest.mark.parametrize("kind", BLOCKS)
-def test_the_stiffness_matrix_is_that_of_the_contact_law(kind):
-    block = BLOCKS[kind]()
-    expected = dense.stiffness(block, KN, KT)
-    assert abs(eq.stiffness_matrix(block, (KN, KT)).toarray() - expected).max() <= 1e-14 * abs(expected).max()
-
-
-@pytest.mark.parametrize("kind", CELLS)
-def test_the_stiffness_matrix_of_a_periodic_cell_is_that_of_the_contact_law(kind):
-    cell = CELLS[kind]()
-    expected = dense.stiffness(cell, KN, KT)
-    assert abs(eq.stiffness_matrix(cell, (KN, KT)).toarray() - expected).max() <= 1e-14 * abs(expected).max()
+@pytest.mark.parametrize("assembly", [*BLOCKS.values(), *CELLS.values()], ids=[*BLOCKS, *(f"cell_{kind}" for kind in CELLS)])
+def test_the_stiffness_matrix_is_that_of_the_contact_law(assembly):
+    made = assembly()
+    expected = dense.stiffness(made, KN, KT)
+    assert abs(eq.stiffness_matrix(made, (KN, KT)).toarray() - expected).max() <= 1e-14 * abs(expected).max()
 
 
 @pytest.mark.parametrize("kind", BLOCKS)
@@ -124,7 +114,7 @@ def test_natural_frequencies_change_as_their_modes_say():
 
     def lowest(change):
         result = eq.stability(block, eq.Springs(np.full(m, KN) + change * direction, np.full(m, KT)),
-                              supports=[{"group": "left", "ux": 0, "uy": 0}], density=2500.0)
+                              supports=HELD, density=2500.0)
         return result, result.natural_omegas[0] ** 2
 
     result, _ = lowest(0)
@@ -150,7 +140,7 @@ def test_natural_frequencies_are_those_of_dense_matrices():
     root = np.sqrt(inertia)
     K = dense.stiffness(block, KN, KT)[np.ix_(free, free)] / root[:, None] / root
     squared, vectors = np.linalg.eigh(K)
-    result = eq.stability(block, (KN, KT), supports=[{"group": "left", "ux": 0, "uy": 0}], density=density)
+    result = eq.stability(block, (KN, KT), supports=HELD, density=density)
     assert np.allclose(result.natural_omegas, np.sqrt(squared[:4]), rtol=1e-6)
     mode = np.column_stack([result.modes["0"].displacements, result.modes["0"].rotations]).ravel()[free] * root
     assert abs(abs(mode @ vectors[:, 0]) / np.linalg.norm(mode) - 1) < 1e-6
@@ -180,21 +170,18 @@ def test_an_assembly_from_arrays_is_the_one_that_its_arrays_came_from():
     ("calibrate", "calibrate_lattice"), ("calibrate", "calibrate_random"), ("stability", "hexagonal_cell"),
     ("pack", "pack_jammed"), ("run", "run_corner"), ("run", "grains_cradle")])
 def test_a_case_gives_the_numbers_of_the_program(verb, case):
-    path = SOURCE / "data/cases" / f"{case}.toml"
+    path = CASES / f"{case}.toml"
     done = subprocess.run([PROGRAM, verb, path, "--json", "-", "--quiet"], check=True, capture_output=True)
     expected = json.loads(done.stdout)
     result = eq.Case(path).run_verb(verb)
-    timed = {"times", "report", "units", "labels", "seconds"}
     found = result.to_dict()
-    for key in expected.keys() - timed:
+    for key in expected.keys() - {"times", "report", "units", "labels", "seconds"}:
         if not key.endswith("per_second"):
             assert found[key] == expected[key], key
 
 
 def test_an_assembly_in_memory_gives_the_numbers_of_its_case():
-    case = SOURCE / "data/cases/abe1996_fig6.toml"
-    from_file = eq.Case(case).solve()
-    block = eq.hexagonal(columns=21, rows=21, radius=0.005)
-    in_memory = eq.tension_test(block, (1e9, 0.5e9), stress=1e6)
+    from_file = eq.Case(CASES / "abe1996_fig6.toml").solve()
+    in_memory = eq.tension_test(hexagonal(21, 21, 0.005), (1e9, 0.5e9), stress=1e6)
     assert in_memory.poisson_ratio == from_file.poisson_ratio
     assert in_memory.theory.poisson_ratio == from_file.theory.poisson_ratio

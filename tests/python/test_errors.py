@@ -3,8 +3,6 @@
 
 import json
 import os
-import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -13,13 +11,11 @@ import numpy as np
 import pytest
 
 import equidem as eq
+from scenes import CASES, HELD, PACKINGS, STUDIES, hexagonal
 
-PACKINGS = pathlib.Path(__file__).resolve().parents[2] / "data/packings"
-CASES = PACKINGS.parent / "cases"
-STUDY = PACKINGS.parent / "studies/abe_lattice.toml"
+STUDY = STUDIES / "abe_lattice.toml"
 CENTRES = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7]]
-BLOCK = eq.hexagonal(columns=5, rows=5, radius=1e-3)
-HELD = [{"group": "left", "ux": 0, "uy": 0}]
+BLOCK = hexagonal(5, 5)
 LOADS = np.ones((len(BLOCK), 2))
 
 WRONG = {

@@ -5,7 +5,6 @@ import dataclasses
 import doctest
 import importlib
 import json
-import pathlib
 import pkgutil
 import re
 
@@ -13,11 +12,17 @@ import numpy as np
 import pytest
 
 import equidem as eq
+from scenes import BLOCK, CASES, CELL, HELD, PULLED, SOURCE, SPRINGS, STUDIES, hexagonal, tension
 
-CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
-STUDY = CASES.parent / "studies/abe_lattice.toml"
-BLOCK = eq.hexagonal(columns=7, rows=7, radius=1e-3)
-SPRINGS = eq.Springs(kN=1e9, kT=0.5e9)
+STUDY = STUDIES / "abe_lattice.toml"
+WIDE = {"kN": 1e9, "kT": 0.5e9, "bond_width": 0.8}
+PACKING = {"method": "growth", "sides": "periodic", "grains": 60, "solid_fraction": 0.8, "gap_tolerance": 0.1,
+           "radii": {"smallest": 1e-3, "largest": 2e-3}}
+
+
+def unloaded():
+    """A solution of one factor, without loads."""
+    return eq.factorize(BLOCK, SPRINGS, HELD).solve(np.zeros((len(BLOCK), 3)))
 
 
 def test_numbers_have_units_and_meanings():
@@ -30,15 +35,14 @@ def test_numbers_have_units_and_meanings():
 
 
 def test_moduli_are_found_by_plane_in_results_of_all_verbs():
-    cell = eq.hexagonal(columns=2, rows=2, radius=1e-3, periodic=True)
-    moduli = eq.homogenize(cell, SPRINGS)
+    moduli = eq.homogenize(CELL, SPRINGS)
     assert moduli.plane_strain.poisson_ratio == moduli.poisson_ratio.plane_strain
     assert moduli.plane_stress.young_modulus == moduli.young_modulus.plane_stress
-    achieved = eq.calibrate(cell, young_modulus=1e9, poisson_ratio=0.1).achieved
+    achieved = eq.calibrate(CELL, young_modulus=1e9, poisson_ratio=0.1).achieved
     assert abs(achieved.plane_strain.poisson_ratio - 0.1) < 1e-12
     assert "plane_strain" not in moduli and "plane_strain" in eq.tension_test(BLOCK, SPRINGS)
     with pytest.raises(AttributeError, match="plane_strain"):
-        eq.stability(cell, SPRINGS).plane_strain
+        eq.stability(CELL, SPRINGS).plane_strain
 
 
 def test_a_result_is_shown_as_text_and_html():
@@ -46,8 +50,7 @@ def test_a_result_is_shown_as_text_and_html():
     assert "tension test" in repr(result) and repr(result) == result.report.rstrip("\n")
     assert result._repr_html_().startswith("<pre>")
     json.dumps(result.to_dict())
-    factor = eq.factorize(BLOCK, SPRINGS, [{"group": "left", "ux": 0, "uy": 0}])
-    assert "<table>" in factor.solve(np.zeros((len(BLOCK), 3)))._repr_html_()
+    assert "<table>" in unloaded()._repr_html_()
 
 
 def test_the_stiffness_is_the_sum_of_springs_times_its_derivatives():
@@ -66,18 +69,15 @@ def test_the_stiffness_is_the_sum_of_springs_times_its_derivatives():
 
 
 def test_load_cases_have_their_own_arrays():
-    result = eq.solve(BLOCK, SPRINGS, supports=[{"group": "left", "ux": 0, "uy": 0}],
-                      loads=[{"group": "right", "force": (1, 0), "case": "pull"},
-                             {"group": "right", "force": (0, 1), "case": "lift"}])
+    result = eq.solve(BLOCK, SPRINGS, supports=HELD, loads=[{"group": "right", "force": (1, 0), "case": "pull"},
+                                                            {"group": "right", "force": (0, 1), "case": "lift"}])
     assert result.pull.displacements[:, 0].max() > 0 and result.lift.displacements[:, 1].max() > 0
     assert [case["case"] for case in result.load_cases] == ["pull", "lift"]
 
 
 def test_a_sweep_is_a_table_with_units():
     pandas = pytest.importorskip("pandas")
-    cell = eq.hexagonal(columns=4, rows=4, radius=1e-3, periodic=True)
-    case = eq.Case(assembly=cell, springs=SPRINGS)
-    table = eq.sweep(case, {"springs.kN": [1e9, 2e9, -1e9], "springs.kT": [0.2e9, 0.4e9]})
+    table = eq.sweep(eq.Case(assembly=CELL, springs=SPRINGS), {"springs.kN": [1e9, 2e9, -1e9], "springs.kT": [0.2e9, 0.4e9]})
     assert isinstance(table, pandas.DataFrame) and len(table) == 6
     assert table.attrs["units"]["shear_modulus"] == "Pa"
     assert table.attrs["units"]["springs.kN"] == "Pa"
@@ -95,9 +95,7 @@ def test_random_cells_are_sampled():
 
 
 def test_springs_that_are_given_replace_those_of_a_packing():
-    packing = {"method": "growth", "sides": "periodic", "grains": 60, "solid_fraction": 0.8, "gap_tolerance": 0.1,
-               "radii": {"smallest": 1e-3, "largest": 2e-3}}
-    packed = eq.pack(packing, (1e9, 0.5e9)).assembly
+    packed = eq.pack(PACKING, (1e9, 0.5e9)).assembly
     own = eq.homogenize(packed)
     assert own.stiffness == eq.homogenize(packed, (1e9, 0.5e9)).stiffness
     assert np.allclose(eq.homogenize(packed, (2e9, 1e9)).stiffness, 2 * np.array(own.stiffness), rtol=1e-12)
@@ -107,15 +105,12 @@ def test_springs_that_are_given_replace_those_of_a_packing():
 
 
 def test_bonds_of_a_width_resist_bending():
-    wide = eq.Springs(kN=1e9, kT=0.5e9, bond_width=0.8)
     ends = [{"group": "left", "ux": 0, "uy": 0, "rotation": 0}, {"group": "right", "uy": 1e-6}]
-    bent = eq.solve(BLOCK, wide, supports=ends)
-    by_key = eq.solve(BLOCK, {"kN": 1e9, "kT": 0.5e9, "bond_width": 0.8}, supports=ends)
-    assert np.array_equal(bent.displacements, by_key.displacements)
+    bent = eq.solve(BLOCK, eq.Springs(**WIDE), supports=ends)
+    assert np.array_equal(bent.displacements, eq.solve(BLOCK, WIDE, supports=ends).displacements)
     assert np.abs(bent.bending_moments).max() > 0
     assert bent.energy > eq.solve(BLOCK, SPRINGS, supports=ends).energy
-    case = eq.Case(assembly={"kind": "hexagonal", "columns": 7, "rows": 7, "radius": 1e-3},
-                   springs={"kN": 1e9, "kT": 0.5e9, "bond_width": 0.8}, supports=ends)
+    case = eq.Case(assembly={"kind": "hexagonal", "columns": 7, "rows": 7, "radius": 1e-3}, springs=WIDE, supports=ends)
     assert np.allclose(bent.displacements, case.solve().displacements, rtol=1e-9, atol=1e-18)
 
 
@@ -140,8 +135,7 @@ def test_a_bending_spring_acts():
 
 
 def test_springs_have_the_keys_of_the_case_file():
-    page = pathlib.Path(__file__).resolve().parents[2] / "docs/case_file.md"
-    table = page.read_text(encoding="utf-8").split("### `[springs]`")[1].split("###")[0]
+    table = (SOURCE / "docs/case_file.md").read_text(encoding="utf-8").split("### `[springs]`")[1].split("###")[0]
     names = re.findall(r"^\| (`[^|]+`) \|.*\| (?!\(packings\))[^|]* \|$", table, re.M)
     assert set(re.findall(r"`(\w+)`", " ".join(names))) == {field.name for field in dataclasses.fields(eq.Springs)}
 
@@ -154,12 +148,11 @@ def test_springs_of_each_contact_are_an_array_too():
 def test_a_verb_says_how_long_it_took():
     result = eq.tension_test(BLOCK, SPRINGS)
     assert 0.5 * sum(result.times.values()) < result.elapsed < 60
-    assert np.isnan(eq.factorize(BLOCK, SPRINGS, [{"group": "left", "ux": 0, "uy": 0}])
-                    .solve(np.zeros((len(BLOCK), 3))).elapsed)
+    assert np.isnan(unloaded().elapsed)
 
 
 def test_refusals_of_an_ensemble_do_not_name_cases_in_memory():
-    packing = {"method": "growth", "sides": "periodic", "grains": 100, "solid_fraction": 0.84, "gap_tolerance": 0.05,
+    packing = {**PACKING, "grains": 100, "solid_fraction": 0.84, "gap_tolerance": 0.05,
                "radii": {"smallest": 0.5e-3, "largest": 1e-3}}
     result = eq.Case(assembly={"kind": "packing"}, packing=packing, springs=SPRINGS,
                      ensemble={"discs": [400], "samples": 5}).homogenize()
@@ -174,13 +167,12 @@ def test_a_study_shows_the_price_of_accuracy():
 
 
 def test_a_dry_run_computes_nothing():
-    case = eq.Case(assembly=BLOCK, springs=SPRINGS, test={"kind": "uniaxial_tension", "stress": 1e6})
-    result = case.solve(dry_run=True)
+    result = tension().solve(dry_run=True)
     assert result.status == "dry_run" and "displacements" not in result and result.unknowns > 0
 
 
 def pulse():
-    return eq.run(eq.hexagonal(columns=20, rows=5, radius=1e-3), SPRINGS, density=2500.0, run={"duration": 1e-4},
+    return eq.run(hexagonal(20, 5), SPRINGS, density=2500.0, run={"duration": 1e-4},
                   velocity=[{"group": "left", "velocity": (0.1, 0.0)}],
                   probe=[{"name": "far", "group": "right", "quantities": ["velocity"]}],
                   output={"probe_interval": 1e-5, "frame_interval": 1e-5})
@@ -224,7 +216,7 @@ def test_pictures_are_drawn(tmp_path):
 
     axes = eq.tension_test(BLOCK, SPRINGS).plot()
     assert len(axes.collections) == 2 and "displacements x" in axes.get_title()
-    waves = eq.stability(eq.hexagonal(columns=2, rows=2, radius=1e-3, periodic=True), SPRINGS, density=2500.0)
+    waves = eq.stability(CELL, SPRINGS, density=2500.0)
     assert len(waves.plot().lines) > 3
     path = eq.Case(CASES / "notched_plate.toml").quasistatic()
     assert [line.get_label() for line in path.plot().lines][0] == "events" and path.assembly is not None
@@ -258,8 +250,7 @@ def test_every_public_name_is_documented():
 
 
 def test_a_case_is_exported_as_the_program_does(tmp_path):
-    case = eq.Case(assembly={"kind": "hexagonal", "columns": 5, "rows": 5, "radius": 5e-3}, springs=(1e9, 0.5e9),
-                   test={"kind": "uniaxial_tension", "stress": 1e6})
+    case = eq.Case(assembly={"kind": "hexagonal", "columns": 5, "rows": 5, "radius": 5e-3}, springs=(1e9, 0.5e9), test=PULLED)
     result = case.export("yade", out=tmp_path / "yade")
     assert result.bonds > 40 and result.time_step > 0
     assert "CohFrictMat" in (tmp_path / "yade" / "run_equidem.py").read_text()

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Simulations are stepped, watched and drawn from Python."""
 
-import pathlib
-
 import numpy as np
 import pytest
 
 import equidem as eq
+from scenes import CASES, hexagonal
 
-CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
 
-
-def pulse():
-    block = eq.hexagonal(columns=20, rows=5, radius=1e-3)
-    return eq.simulation(block, (1e9, 0.5e9), density=2500.0, run={"duration": 2e-4},
-                         velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
+def pulse(group="left", **run):
+    return eq.simulation(hexagonal(20, 5), (1e9, 0.5e9), density=2500.0, run={"duration": 2e-4, **run},
+                         velocity=[{"group": group, "velocity": (0.1, 0.0)}])
 
 
 def test_any_division_of_the_steps_gives_the_same_bits():
@@ -63,12 +59,8 @@ def test_momentum_of_bodies_that_collide_is_kept():
 
 
 def test_velocities_are_given_to_discs_by_number():
-    block = eq.hexagonal(columns=20, rows=5, radius=1e-3)
-    named = eq.simulation(block, (1e9, 0.5e9), density=2500.0, run={"duration": 1e-5},
-                          velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
-    numbered = eq.simulation(block, (1e9, 0.5e9), density=2500.0, run={"duration": 1e-5},
-                             velocity=[{"group": block.groups["left"], "velocity": (0.1, 0.0)}])
-    assert np.array_equal(named.run().velocities, numbered.run().velocities)
+    named, numbered = (pulse(group, duration=1e-5).run() for group in ("left", hexagonal(20, 5).groups["left"]))
+    assert np.array_equal(named.velocities, numbered.velocities)
 
 
 def test_a_simulation_is_drawn_where_its_discs_are():
@@ -104,9 +96,8 @@ def test_forces_of_contacts_are_those_of_their_springs():
 
 
 def test_a_run_that_fails_raises_its_sentence():
-    block = eq.hexagonal(columns=5, rows=5, radius=1e-3)
     with pytest.raises(eq.EquidemError, match="time_step|step"):
-        eq.run(block, (1e9, 0.5e9), density=2500.0, run={"duration": 1e-2, "time_step": 1e-3},
+        eq.run(hexagonal(5, 5), (1e9, 0.5e9), density=2500.0, run={"duration": 1e-2, "time_step": 1e-3},
                velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
 
 
@@ -123,10 +114,9 @@ def test_steps_are_whole_numbers(steps):
 
 @pytest.mark.parametrize("every", [0, -1, 2.5])
 def test_at_least_one_step_lies_between_two_calls(every):
-    with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
-        pulse().run(every=every)
-    with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
-        pulse().frames(every=every)
+    for call in (pulse().run, pulse().frames):
+        with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
+            call(every=every)
 
 
 def test_a_case_that_goes_to_rest_is_no_simulation():

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Threads, processes and Ctrl-C."""
 
+import concurrent.futures
 import json
 import multiprocessing
-import pathlib
 import signal
 import subprocess
 import sys
@@ -13,8 +13,9 @@ import time
 import numpy as np
 
 import equidem as eq
+from scenes import STUDIES, hexagonal, tension
 
-STUDY = str(pathlib.Path(__file__).resolve().parents[2] / "data/studies/integrators.toml")
+STUDY = str(STUDIES / "integrators.toml")
 
 
 def test_two_threads_at_once_give_the_answers_of_one():
@@ -26,16 +27,13 @@ def test_two_threads_at_once_give_the_answers_of_one():
         for k in range(first, len(cells), 2):
             found[k] = eq.homogenize(cells[k], (1e9, 0.5e9)).stiffness
 
-    workers = [threading.Thread(target=work, args=(first,)) for first in range(2)]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join()
+    with concurrent.futures.ThreadPoolExecutor(2) as workers:
+        list(workers.map(work, range(2)))
     assert found == alone
 
 
 def test_results_have_the_same_bits_for_any_number_of_threads():
-    block = eq.hexagonal(columns=60, rows=61, radius=1e-3)
+    block = hexagonal(60, 61)
     results = []
     for count in (1, 2, 3):
         eq.set_threads(count)
@@ -46,9 +44,7 @@ def test_results_have_the_same_bits_for_any_number_of_threads():
 def test_a_verb_with_its_own_threads_leaves_those_of_the_user():
     eq.set_threads(2)
     eq.study(STUDY, rounds=3, budget=1)
-    case = eq.Case(assembly=eq.hexagonal(columns=5, rows=5, radius=1e-3), springs=(1e9, 0.5e9),
-                   test={"kind": "uniaxial_tension"})
-    case.solve(threads=1)
+    tension().solve(threads=1)
     assert eq.threads() == 2
 
 
@@ -62,7 +58,7 @@ def test_progress_is_shown_only_where_it_is_wanted():
 
 
 def test_other_threads_run_during_a_solution():
-    block = eq.hexagonal(columns=300, rows=301, radius=1e-3)
+    block = hexagonal(300, 301)
     ticks, stop = 0, threading.Event()
 
     def tick():
@@ -88,15 +84,15 @@ def _core_solution(block):
     eq._core.run_verb("solve", *case._inputs(), [])
 
 
-def _poisson_ratio(queue):
-    queue.put(eq.tension_test(eq.hexagonal(columns=61, rows=61, radius=1e-3), (1e9, 0.5e9)).poisson_ratio)
+def poisson_ratio():
+    return eq.tension_test(hexagonal(61, 61), (1e9, 0.5e9)).poisson_ratio
 
 
 def test_a_forked_process_computes():
-    expected = eq.tension_test(eq.hexagonal(columns=61, rows=61, radius=1e-3), (1e9, 0.5e9)).poisson_ratio
+    expected = poisson_ratio()
     context = multiprocessing.get_context("fork")
     queue = context.Queue()
-    child = context.Process(target=_poisson_ratio, args=(queue,))
+    child = context.Process(target=lambda: queue.put(poisson_ratio()))
     child.start()
     found = queue.get(timeout=60)
     child.join(60)
