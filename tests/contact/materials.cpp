@@ -171,13 +171,15 @@ TEST_CASE("a_contact_has_the_springs_of_the_groups_of_its_two_discs") {
 TEST_CASE("groups_that_are_no_materials_are_refused") {
   Assembly assembly = cell(true);
   const auto draw = [&](const std::vector<GroupShare>& shares, const GroupDraw& how) {
-    return [&assembly, shares, how] { draw_groups(assembly, shares, how); };
+    return [sample = assembly, shares, how]() mutable { draw_groups(sample, shares, how); };
   };
   check_refused(draw({{"a", 0.7}, {"b", 0.4}}, {}), {"'a', 'b'", "1.1 together"});
   check_refused(draw({{"a", 1e-9}}, {}), {"'a' gets no disc", "larger share"});
   check_refused(draw({{"a", 1e-3}}, {.cells = 3}), {"'a' gets no disc", "more cells"});
   check_refused(draw({{"a", 1}}, {.cells = 501}), {"501 cells", "fewer cells"});
 
+  assembly.groups["cell_1"] = {{0}, {}};
+  check_refused(draw({{"a", 1}}, {.cells = 5}), {"has a group 'cell_1'", "another name"});
   assembly.groups = {{"a", {{0, 1, 2}, {}}}, {"b", {{2, 3}, {}}}};
   const auto pairs = [&](const GroupPair& groups, bool across = false) {
     return [&assembly, groups, across] { Materials(assembly, {{groups, across}}); };

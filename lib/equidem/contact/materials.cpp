@@ -93,8 +93,12 @@ void draw_groups(Assembly& assembly, std::span<const GroupShare> shares, const G
   std::vector<std::vector<std::int32_t>> parts;
   if (draw.cells) {
     parts = discs_of_cells(assembly, *draw.cells, random);
-    for (std::size_t k = 0; k < parts.size(); ++k)
-      assembly.groups[fmt::format("{}{}", cell_prefix, k)] = {parts[k], {}};
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const std::string name = fmt::format("{}{}", cell_prefix, k);
+      if (!assembly.groups.try_emplace(name, DiscGroup{parts[k], {}}).second)
+        bad_input(fmt::format("the assembly has a group '{}'", name), "the cells of groups with a share are called so",
+                  "Choose another name");
+    }
   } else {
     for (std::size_t disc = 0; disc < assembly.size(); ++disc) parts.push_back({static_cast<std::int32_t>(disc)});
   }
