@@ -196,3 +196,23 @@ TEST_CASE("advice_names_a_larger_tolerance_where_one_found_the_contacts") {
   found.gap_tolerance = 0.05;
   CHECK(by_larger_tolerance(found) == " by a gap_tolerance above 0.05");
 }
+
+TEST_CASE("discs_that_are_found_touch_where_their_radii_meet_and_larger_gaps_join_more_of_them") {
+  // In a row the gaps are 0, 1.5, 4 and 30 % of the sum of the two radii, and 44 % across the third disc.
+  Assembly row;
+  row.radii = {1, 2, 1, 3, 1};
+  row.centres = {{0, 0}, {3, 0}, {6.045, 0}, {10.205, 0}, {15.405, 0}};
+  for (const auto& [tolerance, found] : {std::pair{0.0, 1}, {0.01, 1}, {0.02, 2}, {0.05, 3}, {0.2, 3}, {0.5, 5}}) {
+    CAPTURE(tolerance);
+    const std::vector<Contact> contacts = touching_discs(row, tolerance);
+    CHECK(std::ssize(contacts) == found);
+    for (const Contact& c : contacts) {
+      const double share = row.radii[c.i] / (row.radii[c.i] + row.radii[c.j]);
+      CHECK(c.lever_i + c.lever_j == Approx(norm(row.branch(c))));
+      CHECK(c.lever_i == Approx(share * norm(row.branch(c))));
+    }
+    for (const BondCount& count : bond_counts(row))
+      if (count.gap_tolerance == tolerance) CHECK(count.contacts == found);
+  }
+  CHECK(suggested_tolerance(bond_counts(row), 0.02).find("gap_tolerance = 0.5 would find 5 contacts (z = 2)") == 0);
+}
