@@ -280,7 +280,7 @@ void deliver_run(const RunVerb& options, const char* status, Results results, St
     };
     parts.insert(parts.begin(), {"history.csv", write, OutputPart::page});
   }
-  CommonOptions written = options;
+  RunVerb written = options;
   written.overwrite |= options.resume;
   deliver(written, status, std::move(results), std::move(times), parts, failure);
 }

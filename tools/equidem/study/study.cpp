@@ -266,15 +266,16 @@ double measured_number(const Delivery& result, const std::string& measure) {
 }
 
 /// The study file, the case and the files that it reads decide the values of a study.
-std::string inputs_of_study(const std::filesystem::path& path, CommonOptions options) {
+std::string inputs_of_study(StudyVerb verb) {
+  const std::filesystem::path path = verb.file;
   const StudyCase resolved = read_study_case(path);
-  options.verb = resolved.verb;
-  options.case_file = resolved.case_file;
+  verb.verb = resolved.verb;
+  verb.case_file = resolved.case_file;
   std::string text = to_toml(resolved.document, path.parent_path());
   for (const StudyPoint& point : points_of(resolved)) {
-    options.set = point.overrides;
+    verb.set = point.overrides;
     const auto refused = failure_of([&] {
-      const TomlValue document = read_document(resolved.verb, options).document;
+      const TomlValue document = read_document(resolved.verb, verb).document;
       text += to_toml(document, path.parent_path()) + note_of_files(document);
     });
     if (refused) text += refused->what();
@@ -442,7 +443,7 @@ void run_verb(const StudyVerb& verb) {
   const Study study = study_of_file(verb.file, verb);
   if (verb.dry_run) return dry_run_study(verb, study);
   const std::string identity = study.checksum(fmt::format("{} seed {} threads {} {}", machine_text(), verb.options.seed,
-                                                          thread_count(), inputs_of_study(verb.file, verb)));
+                                                          thread_count(), inputs_of_study(verb)));
   const auto lock = lock_out(verb);
   StudySamples kept = samples_to_keep(verb, study, identity);
   const auto& folder = verb.out;

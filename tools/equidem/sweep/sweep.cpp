@@ -305,7 +305,7 @@ void check_different(const SweepOptions& options, const SweepPlan& plan) {
 void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDocument& base) {
   check_different(options, plan);
   for (const SweptKey& key : plan.keys) {
-    CommonOptions first = options;
+    SweepOptions first = options;
     if (key.name != "ratio") refuse_misspelt_ratio(key);
     if (key.name == SweepPlan::seed) {
       first.seed = number_from<std::int64_t>(key.values.front());
