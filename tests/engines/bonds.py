@@ -113,33 +113,53 @@ O.reset()
     return worst((np.loadtxt(out / "plus.txt") - np.loadtxt(out / "minus.txt")) / 2, state.forces)
 
 
-def solved(model, name):
-    """Displacements and rotations of `equidem solve`."""
-    return engines.columns(model.equidem("solve", name) / "discs.csv", "ux_m", "uy_m", "rotation_rad")
-
-
-def lammps_rest(program, folder, case):
-    """Displacements and rotations at rest in LAMMPS beside those of equidem."""
-    model = Model(program, folder, case)
-    expected = solved(model, "solved")
-    out = model.export("lammps")
-    places = engines.columns(model.folder / "solved" / "discs.csv", "x_m", "y_m")
+def motions_in(engine, model, places):
+    """Displacements and rotations of the exported model at its end."""
+    out = model.export(engine)
+    if engine == "yade":
+        engines.run_yade(engines.yade(), out)
+        end = np.loadtxt(out / "end.txt")
+        return end[:, 3:5], end[:, 2]
     engines.run_lammps(engines.lammps_with_bonds(), out)
     end = engines.dump(out / "end.dump")
-    moved = np.stack([end["xu"], end["yu"]], 1) - places
-    turned = 2 * np.arctan2(end["c_turn[2]"], end["c_turn[1]"])
-    return (moved, turned), (expected[:, :2], expected[:, 2])
+    turned = 2 * np.arctan2(end["c_turn[2]"], end["c_turn[1]"]) if "c_turn[2]" in end else None
+    return np.stack([end["xu"], end["yu"]], 1) - places, turned
 
 
-def odd_part(rest, program, folder, case_of):
-    """Half the difference of the motions under loads of both signs, relative to that of equidem: the part of first
-    order in the motion, which is all of it in equidem."""
-    parts = []
-    for sign in (1, -1):
-        (folder / str(sign)).mkdir()
-        parts.append(rest(program, folder / str(sign), case_of(sign)))
-    return max(engines.relative((parts[0][0][k] - parts[1][0][k]) / 2, parts[0][1][k]) for k in range(len(parts[0][1]))
-               if np.any(parts[0][1][k]))
+def rest(engine, program, folder, case):
+    """Displacements and rotations at rest in the engine beside those of `equidem solve`."""
+    model = Model(program, folder, case)
+    table = model.equidem("solve", "solved") / "discs.csv"
+    expected = engines.columns(table, "ux_m", "uy_m", "rotation_rad")
+    return motions_in(engine, model, engines.columns(table, "x_m", "y_m")), (expected[:, :2], expected[:, 2])
+
+
+def run_difference(engine, *cases):
+    """A check: displacements after a run in the engine and in equidem, relative to the largest; the largest of the cases."""
+    def check(program, folder):
+        values = []
+        for number, case in enumerate(cases):
+            (folder / str(number)).mkdir()
+            model = Model(program, folder / str(number), case)
+            table = model.equidem("run", "run") / "discs.csv"
+            moved, _ = motions_in(engine, model, engines.columns(table, "x_m", "y_m"))
+            values.append(engines.relative(moved, engines.columns(table, "ux_m", "uy_m")))
+        return max(values)
+    return check
+
+
+def odd_part(engine, case_of, prepare=lambda folder: None):
+    """A check: half the difference of the motions under loads of both signs, relative to that of equidem: the part of first order
+    in the motion, which is all of it in equidem."""
+    def check(program, folder):
+        parts = []
+        prepare(folder)
+        for sign in (1, -1):
+            (folder / str(sign)).mkdir()
+            parts.append(rest(engine, program, folder / str(sign), case_of(sign)))
+        return max(engines.relative((parts[0][0][k] - parts[1][0][k]) / 2, parts[0][1][k]) for k in range(len(parts[0][1]))
+                   if np.any(parts[0][1][k]))
+    return check
 
 
 def tension(sign):
@@ -158,50 +178,19 @@ def restrained(sign):
     return RESTRAINED + tension(sign)
 
 
-def lammps_tension(program, folder):
-    return odd_part(lammps_rest, program, folder, tension)
-
-
 def lammps_shrinking(program, folder):
     """The error at a strain of about 1e-5 as it is; at a tenth of it LAMMPS's own rounding is as large."""
-    moved, expected = lammps_rest(program, folder, TENSION.format(stress=1e4))
+    moved, expected = rest("lammps", program, folder, TENSION.format(stress=1e4))
     return engines.relative(moved[0], expected[0])
 
 
-def lammps_shear(program, folder):
-    return odd_part(lammps_rest, program, folder, shear)
-
-
-def lammps_restrained(program, folder):
-    return odd_part(lammps_rest, program, folder, restrained)
-
-
-def yade_rest(program, folder, case):
-    """Displacements and rotations at rest in YADE beside those of equidem."""
-    model = Model(program, folder, case)
-    expected = solved(model, "solved")
-    out = model.export("yade")
-    engines.run_yade(engines.yade(), out)
-    end = np.loadtxt(out / "end.txt")
-    return (end[:, 3:5], end[:, 2]), (expected[:, :2], expected[:, 2])
-
-
-def yade_tension(program, folder):
-    return odd_part(yade_rest, program, folder, tension)
-
-
-def yade_shear(program, folder):
-    return odd_part(yade_rest, program, folder, shear_with_moments)
-
-
-def yade_restrained(program, folder):
-    return odd_part(yade_rest, program, folder, restrained)
-
-
-def yade_unequal(program, folder):
+def rows_file(folder):
     """Discs of two radii that touch: the contact points are off the middle."""
     (folder / "rows.json").write_text(rows_of_two_radii(10, 4))
-    return odd_part(yade_rest, program, folder, lambda sign: f'''
+
+
+def pulled_rows(sign):
+    return f'''
 [assembly]
 kind = "file"
 path = "../rows.json"
@@ -215,7 +204,7 @@ uy = 0.0
 [[load]]
 group = "head"
 force = [{sign * 60}, {sign * 20}]
-''')
+'''
 
 
 def rows_of_two_radii(columns, lines):
@@ -248,28 +237,6 @@ def rows_of_two_radii(columns, lines):
                                   "head": [line * columns + columns - 1 for line in range(lines)]}})
 
 
-def run_difference(program, folder, case):
-    """Displacements after a run of LAMMPS and of equidem, relative to the largest."""
-    lammps = engines.lammps_with_bonds()
-    model = Model(program, folder, case)
-    table = model.equidem("run", "run") / "discs.csv"
-    expected = engines.columns(table, "ux_m", "uy_m")
-    out = model.export("lammps")
-    engines.run_lammps(lammps, out)
-    end = engines.dump(out / "end.dump")
-    moved = np.stack([end["xu"], end["yu"]], 1) - engines.columns(table, "x_m", "y_m")
-    return engines.relative(moved, expected)
-
-
-def yade_run_difference(program, folder, case):
-    """The displacements of YADE at the end of a run differ from those of equidem by this, relative."""
-    model = Model(program, folder, case)
-    expected = engines.columns(model.equidem("run", "run") / "discs.csv", "ux_m", "uy_m")
-    out = model.export("yade")
-    engines.run_yade(engines.yade(), out)
-    return engines.relative(np.loadtxt(out / "end.txt")[:, 3:5], expected)
-
-
 #: Loads and gravity that set the network in motion from rest.
 SET_IN_MOTION = NETWORK + '''
 [[support]]
@@ -286,14 +253,6 @@ duration = 1e-4
 time_step = 4e-7
 gravity = [300.0, -700.0]
 '''
-
-
-def lammps_set_in_motion(program, folder):
-    return run_difference(program, folder, SET_IN_MOTION)
-
-
-def yade_set_in_motion(program, folder):
-    return yade_run_difference(program, folder, SET_IN_MOTION)
 
 
 #: A block above a wall of springs, which the lowest discs touch at y = -6.698729810778e-4.
@@ -319,21 +278,17 @@ damping = {{ local = 0.05 }}
 '''
 
 
-def lammps_wall(program, folder):
-    """A block falls on a wall and rebounds; its gravity and speed keep strains near 1e-4."""
-    return run_difference(program, folder, BLOCK_ON_WALL.format(wall="point = [0.0, -6.7e-4]", run='''gravity = [0.0, -9.81]
+#: A block that falls on a wall and rebounds; its gravity and speed keep strains near 1e-4.
+FALLING = BLOCK_ON_WALL.format(wall="point = [0.0, -6.7e-4]", run='''gravity = [0.0, -9.81]
 [[velocity]]
 group = "all"
 velocity = [0.0, -0.05]
 [[group]]
 name = "all"
 box = [-1.0, -1.0, 1.0, 1.0]
-'''))
-
-
-def lammps_moving_wall(program, folder):
-    """A wall of springs that moves into a block along a ramp."""
-    return run_difference(program, folder, BLOCK_ON_WALL.format(run="", wall='''point = [0.0, -6.698729810778e-4]
+''')
+#: A wall of springs that moves into a block along a ramp.
+PUSHED = BLOCK_ON_WALL.format(run="", wall='''point = [0.0, -6.698729810778e-4]
 displacement = 1.0e-5
 direction = [0.0, 1.0]
 schedule = "slowly"
@@ -341,4 +296,4 @@ schedule = "slowly"
 name = "slowly"
 kind = "ramp"
 end = 4.0e-4
-'''))
+''')

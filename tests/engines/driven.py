@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bonded discs that schedules drive, whose bonds have dashpots, or that fill a periodic cell: the exported model in its
 engine against equidem."""
-from bonds import NETWORK, run_difference, yade_run_difference
+from bonds import NETWORK
 
 #: Supports and loads that follow a ramp, a sine and a table; the table and the ramp change from the first step on.
 DRIVEN = NETWORK + '''
@@ -58,7 +58,7 @@ def driven(size, turning):
                          moment=f"moment = {size}" if turning else "")
 
 
-DASHPOTS = NETWORK + '''
+DASHPOTS = [(NETWORK + '''
 [[support]]
 group = "bottom"
 ux = 0.0
@@ -72,7 +72,7 @@ kind = "per_disc"
 duration = 2.0e-4
 time_step = 4.0e-7
 damping = {{ {damping} }}
-'''
+''').format(damping=damping) for damping in ("stiffness = 5.0e-6", "contact = 0.2")]
 
 #: A pulse in a periodic cell, across whose sides discs are bonded.
 PERIODIC = '''
@@ -92,36 +92,5 @@ velocity = [0.02, 0.01]
 [run]
 duration = 2e-4
 '''
-LATTICE = 'kind = "hexagonal"\ncolumns = 8\nrows = 8\nradius = 0.005'
-RANDOM = 'kind = "delaunay"\ndiscs = 60\nradius = 0.005\nseed = 3'
-
-
-def lammps_driven(program, folder):
-    return run_difference(program, folder, driven(1.0, False))
-
-
-def yade_driven(program, folder):
-    """The difference is that of finite motion: it falls with the size, which is small here."""
-    return yade_run_difference(program, folder, driven(0.01, True))
-
-
-def largest(difference, program, folder, cases):
-    values = []
-    for number, case in enumerate(cases):
-        (folder / str(number)).mkdir()
-        values.append(difference(program, folder / str(number), case))
-    return max(values)
-
-
-def lammps_dashpots(program, folder):
-    return largest(run_difference, program, folder,
-                   [DASHPOTS.format(damping=damping) for damping in ("stiffness = 5.0e-6", "contact = 0.2")])
-
-
-def lammps_periodic(program, folder):
-    return run_difference(program, folder, PERIODIC.format(assembly=LATTICE))
-
-
-def yade_periodic(program, folder):
-    return largest(yade_run_difference, program, folder,
-                   [PERIODIC.format(assembly=assembly) for assembly in (LATTICE, RANDOM)])
+LATTICE, RANDOM = (PERIODIC.format(assembly=assembly) for assembly in (
+    'kind = "hexagonal"\ncolumns = 8\nrows = 8\nradius = 0.005', 'kind = "delaunay"\ndiscs = 60\nradius = 0.005\nseed = 3'))

@@ -70,33 +70,16 @@ EQUAL = [0.0075] * 20
 GRADED = [0.0060 + 0.0015 * ((7 * k) % 20) / 19 for k in range(20)]
 
 
-def lammps_box(lammps, program, folder, radii, **settings):
-    """Positions and velocities at the end of the run."""
-    box = Box(program, folder, radii, **settings)
-    out = box.model.export("lammps", "--accept", "friction")
-    engines.run_lammps(lammps, out)
+def end_in(engine, model):
+    """Places, velocities and spins of the bodies of the exported model at its end; engine: lammps, newer_lammps or yade."""
+    out = model.export("yade" if engine == "yade" else "lammps", "--accept", "friction")
+    if engine == "yade":
+        engines.run_yade(engines.yade(), out)
+        end = np.loadtxt(out / "end.txt", ndmin=2)
+        return end[:, :2], end[:, 5:7], end[:, 7]
+    engines.run_lammps(engines.lammps() if engine == "lammps" else engines.lammps_with_bonds(), out)
     end = engines.dump(out / "end.dump")
-    return box, np.stack([end["xu"], end["yu"]], 1), np.stack([end["vx"], end["vy"]], 1)
-
-
-def motion_difference(lammps, program, folder, radii, duration=0.1, **settings):
-    """After a tenth of a second with impacts: places relative to the way fallen."""
-    box, places, _ = lammps_box(lammps, program, folder, radii, duration=duration, friction=0.0, **settings)
-    return float(np.max(np.abs(places - box.end[:, :2])) / (0.5 * 9.81 * 0.1**2))
-
-
-def lammps_motion(program, folder):
-    return motion_difference(engines.lammps(), program, folder, EQUAL)
-
-
-def lammps_motion_graded(program, folder):
-    """Unequal discs: the style granular, of a newer LAMMPS."""
-    return motion_difference(engines.lammps_with_bonds(), program, folder, GRADED)
-
-
-def lammps_elastic(program, folder):
-    """Walls and pairs without dashpots in a newer LAMMPS, before impacts magnify rounding."""
-    return motion_difference(engines.lammps_with_bonds(), program, folder, EQUAL, duration=0.05, restitution=1.0)
+    return np.stack([end["xu"], end["yu"]], 1), np.stack([end["vx"], end["vy"]], 1), end.get("omegaz")
 
 
 #: The left wall pushes the discs: from the first step on; at a constant speed; along a smooth ramp; to and fro.
@@ -114,37 +97,25 @@ def piston(kind):
     return {"walls": WALLS.replace('name = "left"', moving) + f'[[schedule]]\nname = "push"\n{PISTONS[kind]}\n'}
 
 
-def lammps_piston(program, folder):
-    """At a constant speed both make the same steps."""
-    return motion_difference(engines.lammps(), program, folder, EQUAL, duration=0.05, **piston("speed"))
+def motion(engine, *cases, radii=EQUAL, way=0.5 * 9.81 * 0.1**2):
+    """A check: places after impacts relative to a way, that fallen in a tenth of a second; the largest of the cases, each with settings
+    of its own beside 0.1 s without friction."""
+    def check(program, folder):
+        values = []
+        for number, settings in enumerate(cases or ({},)):
+            (folder / str(number)).mkdir()
+            box = Box(program, folder / str(number), radii, **{"duration": 0.1, "friction": 0.0, **settings})
+            values.append(float(np.max(np.abs(end_in(engine, box.model)[0] - box.end[:, :2])) / way))
+        return max(values)
+    return check
 
 
-def lammps_curved_pistons(program, folder):
-    """Along curves the speed of the wall, which acts on the dashpots, is a difference over a step in LAMMPS."""
-    def difference(kind):
-        (folder / kind).mkdir()
-        return motion_difference(engines.lammps(), program, folder / kind, EQUAL, duration=0.05, time_step=5e-6, **piston(kind))
-    return max(difference("ramp"), difference("sine"))
-
-
-def yade_piston(program, folder):
-    """Without dashpots; the same steps as in equidem."""
-    def difference(kind, duration):
-        (folder / kind).mkdir()
-        box = Box(program, folder / kind, EQUAL, duration=duration, friction=0.0, restitution=1.0, time_step=2e-6,
-                  **piston(kind))
-        out = box.model.export("yade")
-        engines.run_yade(engines.yade(), out)
-        places = np.loadtxt(out / "end.txt")[:, :2]
-        return float(np.max(np.abs(places - box.end[:, :2])) / 6e-3)
-    return max(difference("start", 0.04), difference("speed", 0.04), difference("ramp", 0.04), difference("sine", 0.025))
-
-
-def lammps_friction(program, folder):
-    """Both settle with friction: the levers of LAMMPS are the radii, those of equidem add up to the distance of the
-    centres, so that moments differ by overlap over diameter, here 1e-3; which contacts slide decides the rest."""
-    box, places, _ = lammps_box(engines.lammps(), program, folder, EQUAL, duration=1.5)
-    return settled_difference(places, box.end[:, :2], EQUAL)
+#: At a constant speed of the wall both make the same steps. Along curves its speed, which acts on the dashpots, is a difference over a
+#: step in LAMMPS. Without dashpots YADE makes the steps of equidem.
+STEADY = {"duration": 0.05, **piston("speed")}
+CURVED = [{"duration": 0.05, "time_step": 5e-6, **piston(kind)} for kind in ("ramp", "sine")]
+LOSSLESS = [{"duration": duration, "restitution": 1.0, "time_step": 2e-6, **piston(kind)}
+            for kind, duration in (("start", 0.04), ("speed", 0.04), ("ramp", 0.04), ("sine", 0.025))]
 
 
 class Sliding:
@@ -164,49 +135,20 @@ class Sliding:
         return float(max(abs(speed - self.end[0]), 0.0075 * abs(spin - self.end[1])) / 0.2)
 
 
-def sliding_in(lammps, program, folder):
-    disc = Sliding(program, folder)
-    out = disc.model.export("lammps", "--accept", "friction")
-    engines.run_lammps(lammps, out)
-    end = engines.dump(out / "end.dump")
-    return disc.difference(end["vx"][0], end["omegaz"][0])
+def sliding(engine, spin=0.0, further="", slowed=(0.0, 1.0)):
+    """A check; `slowed`: the least and the most that it loses of its speed."""
+    def check(program, folder):
+        disc = Sliding(program, folder, spin, further)
+        lost = 1 - disc.end[0] / 0.2
+        if not slowed[0] < lost < slowed[1]:
+            raise engines.Failed(f"the disc lost {lost:.2g} of its speed")
+        _, velocities, spins = end_in(engine, disc.model)
+        return disc.difference(velocities[0, 0], spins[0])
+    return check
 
 
-def lammps_sliding(program, folder):
-    return sliding_in(engines.lammps(), program, folder)
-
-
-def lammps_rolling(program, folder):
-    """Rolling friction slows it, by spring, dashpot and limit."""
-    disc = Sliding(program, folder, 0.2, "rolling_friction = 0.2\nrolling_ratio = 0.3\nrolling_damping = 0.3")
-    slowed = 1 - disc.end[0] / 0.2
-    if not 0.01 < slowed < 0.9:
-        raise engines.Failed(f"rolling friction took {slowed:.2g} of the speed")
-    out = disc.model.export("lammps", "--accept", "friction")
-    engines.run_lammps(engines.lammps_with_bonds(), out)
-    end = engines.dump(out / "end.dump")
-    return disc.difference(end["vx"][0], end["omegaz"][0])
-
-
-def lammps_sliding_newer(program, folder):
-    return sliding_in(engines.lammps_with_bonds(), program, folder)
-
-
-def yade_motion(program, folder):
-    """Impacts with dashpots, of bodies and of walls."""
-    box = Box(program, folder, EQUAL, duration=0.1, friction=0.0)
-    out = box.model.export("yade")
-    engines.run_yade(engines.yade(), out)
-    places = np.loadtxt(out / "end.txt")[:, :2]
-    return float(np.max(np.abs(places - box.end[:, :2])) / (0.5 * 9.81 * 0.1**2))
-
-
-def yade_sliding(program, folder):
-    disc = Sliding(program, folder)
-    out = disc.model.export("yade", "--accept", "friction")
-    engines.run_yade(engines.yade(), out)
-    end = np.loadtxt(out / "end.txt")
-    return disc.difference(end[5], end[7])
+#: Rolling friction slows it, by spring, dashpot and limit.
+ROLLING = {"spin": 0.2, "further": "rolling_friction = 0.2\nrolling_ratio = 0.3\nrolling_damping = 0.3", "slowed": (0.01, 0.9)}
 
 
 def overlaps(places, radii):
@@ -231,10 +173,13 @@ def settled_difference(places, expected_places, radii):
     return max(abs(found.get(pair, 0.0) - expected.get(pair, 0.0)) for pair in {*found, *expected}) / largest
 
 
-def lammps_settled(program, folder):
-    """Both settle from the same start."""
-    box, places, _ = lammps_box(engines.lammps(), program, folder, EQUAL, duration=1.5, friction=0.0)
-    return settled_difference(places, box.end[:, :2], EQUAL)
+def lammps_settled(friction):
+    """A check: both settle from the same start. With friction the levers of LAMMPS are the radii, those of equidem add up to the
+    distance of the centres, so that moments differ by overlap over diameter, here 1e-3; which contacts slide decides the rest."""
+    def check(program, folder):
+        box = Box(program, folder, EQUAL, duration=1.5, friction=friction)
+        return settled_difference(end_in("lammps", box.model)[0], box.end[:, :2], EQUAL)
+    return check
 
 
 def yade_settled(program, folder):

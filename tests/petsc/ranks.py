@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The two programs and what they write."""
+import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -11,9 +13,20 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 PROGRAM, PARALLEL, MPIRUN, SOURCE = sys.argv[1:5]
 CASES = pathlib.Path(SOURCE, "data", "cases")
-SERIAL_FILES = ("--set", "output.files=['vtk']")
+SERIAL_FILES = "output.files=['vtk']"
 LIMIT = 600  # s: ends a command that hangs, also on a busy machine
-CUT = ("--set", "assembly.columns=41", "--set", "assembly.rows=23")
+TENSION = CASES / "abe1996_fig6.toml"
+CUT = (TENSION, "assembly.columns=41", "assembly.rows=23")
+
+
+def words_of(arguments):
+    """A word key=value is given by --set."""
+    return [word for argument in map(str, arguments)
+            for word in (("--set", argument) if re.match(r"[a-z]\w*(\.\w+)*=", argument) else (argument,))]
+
+
+def result_in(folder):
+    return json.loads((folder / "result.json").read_text(encoding="utf-8"))
 
 
 def command(ranks, *arguments):
@@ -23,7 +36,7 @@ def command(ranks, *arguments):
                        PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
                        # Ranks of one machine share memory: looking for networks takes half of the start.
                        OMPI_MCA_pml="ob1", OMPI_MCA_btl="self,vader")
-    return [MPIRUN, "-n", str(ranks), PARALLEL, *map(str, arguments)], environment
+    return [MPIRUN, "-n", str(ranks), PARALLEL, *words_of(arguments)], environment
 
 
 def parallel(ranks, *arguments):
@@ -35,7 +48,7 @@ def parallel(ranks, *arguments):
 
 
 def serial(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=LIMIT, check=False)
+    return subprocess.run([PROGRAM, *words_of(arguments)], capture_output=True, text=True, timeout=LIMIT, check=False)
 
 
 def checked(result, what):
