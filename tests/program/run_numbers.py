@@ -26,12 +26,12 @@ TASKS = [
 # Of work and round-off, not of the answer; directions where none is preferred.
 OTHERS = re.compile(r"time|residual|error|bytes|refine|iteration|condition|seconds|balance|operations|nonzeros|power|factor_|"
                     r"factorizations|updates|accuracy|threads|step|width|drift|evaluations|unstable_|overlap|gap|asymmetry|sweeps|rebuilds|"
-                    r"hill_mandel|anisotropy|axis|axes|direction")
+                    r"hill_mandel|anisotropy|axis|axes|direction|\.\d+\.")
 
 
 def numbers_in(text):
     """Those of the answer, not those of lists."""
-    return {name: value for name, value in numbers_of(parse_json(text), positions=False)
+    return {name: value for name, value in numbers_of(parse_json(text))
             if not isinstance(value, list) and not OTHERS.search(name)}
 
 
