@@ -31,7 +31,7 @@ TEST_CASE("digits_are_grouped_by_three_from_the_right") {
 
 TEST_CASE("bytes_and_shares_are_rounded_as_a_person_reads_them") {
   for (const auto& [bytes, text] : std::vector<std::pair<double, std::string>>{
-           {0, "0 B"}, {999, "999 B"}, {1500, "1.5 kB"}, {9960, "10 kB"}, {999600, "1 MB"}, {5.7e9, "5.7 GB"}})
+           {0, "0 B"}, {999, "999 B"}, {1500, "1.5 kB"}, {9960, "10 kB"}, {999600, "1.0 MB"}, {5.7e9, "5.7 GB"}})
     CHECK(readable_bytes(bytes) == text);
   CHECK(percent(0.0125) == "1.25 %");
   CHECK(percent(0.333333, 2) == "33 %");

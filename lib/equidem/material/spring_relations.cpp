@@ -49,8 +49,8 @@ void check(const IsotropicMeasures& measures) {
                   "then; {}",
                   highest, springs->ratio(), relation.source, relation.static_limit),
       fmt::format(
-          "Choose a Poisson's ratio of at most {:.6g}, allow kT < 0 with static_only = true, or calibrate a random "
-          "packing or triangulation, which often reaches more",
+          "Choose a Poisson's ratio of at most {:.6g}, allow kT < 0 with static_only = true, or take the kN and "
+          "kT of 'equidem calibrate', which fits the assembly itself: random ones often reach more, lattices do not",
           highest));
 }
 
