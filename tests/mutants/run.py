@@ -20,7 +20,8 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BEHIND = ("invariants", "agreement", "hard_cases", "papers", "third_party")
 # Rooms whose tests go through the formulas of another one.
-USERS = {"geometry": ("packing", "grains"), "linear": ("statics", "breakage"), "core": ("casefile",)}
+USERS = {"geometry": ("packing", "grains"), "linear": ("statics", "breakage"), "statics": ("waves", "breakage"),
+         "core": ("casefile",)}
 SCRIPTS = {"output": ("run_export.py", "run_formats.py"), "casefile": ("run_pack.py",), "core": ("run_import.py",)}
 LONGEST = 900  # s: a loop that does not end is a fault that is found
 WANTED = 0.95
