@@ -74,7 +74,7 @@ class Memory(ProgramTest):
                   for method in ("multifrontal", "cholmod", "umfpack", "multigrid")),
                 ("solve", TENSION, *block, "springs.kT=-0.1e9"),
                 ("homogenize", CELL, "assembly.discs=20000", "homogenize.bounds=affine"),
-                        ("homogenize", CELL, "assembly.discs=20000"),
+                ("homogenize", CELL, "assembly.discs=20000"),
                 ("homogenize", ENSEMBLE, "ensemble.discs=[2000, 19000]", "ensemble.samples=2"),
                 ("homogenize", ENSEMBLE, "ensemble.discs=[40000]", "ensemble.samples=2"),
                 ("quasistatic", CASES / "notched_plate.toml", *block, "quasistatic.max_events=3"),
@@ -83,17 +83,19 @@ class Memory(ProgramTest):
                 ("stability", TENSION, "assembly.columns=80", "assembly.rows=80"), ("stability", CELL, "assembly.discs=10000"),
                 ("calibrate", CASES / "calibrate_random.toml", "assembly.discs=50000"),
                 ("sweep", TENSION, *block, "--key", "ratio", "--values", "0,0.1,0.2,0.3"),
-                        ("study", STUDY, "--rounds", 3, "--budget", 0),
+                ("study", STUDY, "--rounds", 3, "--budget", 0),
                 ("export", TENSION, *block, "--to", "lammps"), ("export", TENSION, *block, "--to", "matrix-market"),
                 ("pack", jammed, "packing.grains=50000", *loose),
                 ("pack", jammed, "packing.grains=200000", "packing.method=insertion", "packing.overlap=none", *loose),
                 ("run", CASES / "run_pulse.toml", *block, "run.duration=1e-5"), ("run", self.fallen())):
             with self.subTest(command=command):
+                # Two cells at once need not reach their peaks together.
+                most = 2.3 if command[1] == ENSEMBLE else 1.3
                 for files in ((), ("--out", self.folder / "out", "--overwrite"))[command[0] == "export":]:
                     told = parse_json(self.peak(*command, *files, "--dry-run", "--json", "-")[1])["peak_bytes"]
                     taken, _ = self.peak(*command, *files)
                     shown = f"told {told / 1e6:.0f} MB, taken {taken / 1e6:.0f} MB, {bare / 1e6:.0f} MB of it for any case; {files}"
-                    self.assertLess(told - bare, 1.3 * (taken - bare) + slack, shown)
+                    self.assertLess(told - bare, most * (taken - bare) + slack, shown)
                     self.assertLess(taken - bare, 1.3 * (told - bare) + slack, shown)
 
     def test_twenty_five_million_discs_are_not_refused_for_a_factor_that_multigrid_does_not_make(self):
