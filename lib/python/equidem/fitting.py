@@ -249,7 +249,7 @@ def fit_springs(cell: Assembly, start: Any, targets: Mapping[str, float],
     wanted, of_targets = _targets(targets, weights)
     problem = _Problem(cell, springs, chosen, wanted, of_targets, {"homogenize": {"bounds": "affine"}, **tables})
     low, high = np.log(smallest), np.log(largest)
-    logs = np.zeros(len(chosen))
+    logs: Floats = np.zeros(len(chosen))
     values, residuals, slopes = problem(logs)
     while problem.evaluations < most and np.abs(residuals / of_targets).max() > tolerance:
         new = _step(logs, residuals, slopes, low, high)
