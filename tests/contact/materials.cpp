@@ -85,7 +85,7 @@ TEST_CASE("a_cell_holds_the_discs_nearest_to_its_point_and_a_group_holds_whole_c
   Assembly assembly = cell(periodic);
   draw_groups(assembly, {{{"quartz", 1}}}, {.cells = count, .seed = seed});
 
-  // The same points, and the distance to each image of each of them.
+  // These are the same points; each disc belongs to the one with the nearest image.
   Vec2 low = assembly.centres.front(), high = low;
   for (const Vec2& x : assembly.centres) {
     low = {std::min(low.x, x.x), std::min(low.y, x.y)};
@@ -142,7 +142,7 @@ TEST_CASE("a_contact_has_the_springs_of_the_groups_of_its_two_discs") {
                                                       {{"feldspar", "quartz"}, false, mixed},
                                                       {{"quartz", "quartz"}, true, boundary},
                                                       {{"mica", "mica"}, true, soft}};
-  const std::vector<SpringConstants> found = values_of(assembly, elsewhere, pairs, in_series);
+  const std::vector<SpringConstants> found = Materials(assembly, pairs).of_contacts(elsewhere, pairs, in_series);
   std::set<std::string> met;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
@@ -168,6 +168,35 @@ TEST_CASE("a_contact_has_the_springs_of_the_groups_of_its_two_discs") {
                                      "quartz quartz", "quartz quartz across"});
 }
 
+TEST_CASE("what_gives_a_contact_its_springs_is_one_pair_or_two_that_are_joined") {
+  // Discs 0 to 3 touch in a row; 0, 1 are quartz and 2, 3 mica, in one cell each but for disc 3.
+  Assembly row;
+  row.centres = {{0, 0}, {2, 0}, {4, 0}, {6, 0}};
+  row.radii = {1, 1, 1, 1};
+  row.contacts = {{.i = 0, .j = 1}, {.i = 1, .j = 2}, {.i = 2, .j = 3}};
+  row.groups = {{"quartz", {{0, 1}, {}}},
+                {"mica", {{2, 3}, {}}},
+                {"cell_0", {{0, 1}, {}}},
+                {"cell_1", {{2}, {}}},
+                {"cell_2", {{3}, {}}}};
+  std::vector<OfPair<SpringConstants>> pairs = {
+      {{"quartz", "mica"}, false, {7, 7}}, {{"quartz", "quartz"}, true, {2, 2}}, {{"mica", "mica"}, true, {6, 6}}};
+  const auto springs = [&] { return Materials(row, pairs).of_contacts(SpringConstants{1, 1}, pairs, in_series); };
+  const auto pair_of = [&](std::size_t contact) { return Materials(row, pairs).pair_of(contact); };
+  CHECK(springs()[0].kN == 1);
+  CHECK_FALSE(pair_of(0));
+  CHECK_THAT(springs()[1].kN, Catch::Matchers::WithinRel(3.0, 1e-15));  // those across cells come first: 2 * 2 * 6/8
+  CHECK_FALSE(pair_of(1));
+  CHECK(springs()[2].kN == 6);
+  CHECK(pair_of(2) == 2);
+  pairs.pop_back();
+  CHECK(springs()[1].kN == 7);
+  CHECK(pair_of(1) == 0);
+  // A negative spring is joined with no other where its group touches none without a pair of its own.
+  pairs = {{{"quartz", "quartz"}, false, {3, -1}}, {{"quartz", "mica"}, false, {7, 7}}};
+  CHECK(springs()[0].kT == -1);
+}
+
 TEST_CASE("groups_that_are_no_materials_are_refused") {
   Assembly assembly = cell(true);
   const auto draw = [&](const std::vector<GroupShare>& shares, const GroupDraw& how) {
@@ -178,6 +207,7 @@ TEST_CASE("groups_that_are_no_materials_are_refused") {
   check_refused(draw({{"a", 1e-3}}, {.cells = 3}), {"'a' gets no disc", "more cells"});
   check_refused(draw({{"a", 1}}, {.cells = 501}), {"501 cells", "fewer cells"});
 
+  check_refused(draw({{"cell_2", 1}}, {.cells = 5}), {"has a group 'cell_2'", "another name"});
   assembly.groups["cell_1"] = {{0}, {}};
   check_refused(draw({{"a", 1}}, {.cells = 5}), {"has a group 'cell_1'", "another name"});
   assembly.groups = {{"a", {{0, 1, 2}, {}}}, {"b", {{2, 3}, {}}}};

@@ -334,7 +334,7 @@ TEST_CASE("rows_of_two_materials_are_springs_in_series_across_and_side_by_side_a
   }
   const SpringConstants hard{4e9, 1e9}, soft{1e9, 3e8};
   const std::vector<OfPair<SpringConstants>> pairs = {{{"hard", "hard"}, false, hard}, {{"soft", "soft"}, false, soft}};
-  const ContactSprings springs(values_of(lattice, {1, 1}, pairs, in_series));
+  const ContactSprings springs(Materials(lattice, pairs).of_contacts({1, 1}, pairs, in_series));
   const Matrix3 stiffness = effective_stiffness(lattice, springs).stiffness;
   CAPTURE(stiffness[0], stiffness[1]);
   CHECK_THAT(stiffness[0][0], Catch::Matchers::WithinRel(0.5 * (hard.kN + soft.kN), 1e-12));

@@ -4,7 +4,7 @@ import json
 import math
 import unittest
 
-from program import CASES, CELL, ENSEMBLE, SOURCE, ProgramTest, equidem, result_in, rows_of
+from program import CASES, CELL, ENSEMBLE, SOURCE, ProgramTest, equidem, flat, result_in, rows_of
 
 REFERENCE, FREE = SOURCE / "data" / "reference", CASES / "free_sample.toml"
 KN = 1e9
@@ -154,6 +154,18 @@ class Rigidity(HomogenizeTest):
             for words in ("1 disc without contacts, the farthest disc 64 at (0.12, 0.04) m, makes the region", "Remove it"):
                 self.assertEqual(words in report, bool(loose), report)
             self.assertEqual("every disc carries load" in report, not loose, report)
+
+    def test_given_contacts_that_join_discs_that_lie_anywhere_are_questioned(self):
+        places = [(i * 0.01, j * 0.01) for j in range(4) for i in range(4)]
+        right = [(i, j) for i, a in enumerate(places) for j, b in enumerate(places)
+                 if i < j and 0.0099 < abs(a[0] - b[0]) + abs(a[1] - b[1]) < 0.0101]
+        self.write("x_m,y_m,radius_m\n" + "".join(f"{x},{y},0.005\n" for x, y in places), "discs.csv")
+        case = self.of_file("discs.csv", "contacts = 'contacts.csv'\n[springs]\nkN = 1e9\nkT = 5e8\n")
+        for shift in (0, 1):  # numbers from 1, read as those from 0
+            self.write("i,j\n" + "".join(f"{(i + shift) % 16},{(j + shift) % 16}\n" for i, j in right), "contacts.csv")
+            self.assertEqual("check that the contacts are too" in flat(self.report("homogenize", case)), bool(shift))
+        random = self.report("homogenize", CELL, "assembly.points=random", "assembly.discs=300")
+        self.assertNotIn("check that the contacts", flat(random))
 
     def test_an_unstable_lattice_is_marked_and_a_floppy_one_has_no_modulus(self):
         # The square lattice loses stability for every kT < 0.

@@ -99,7 +99,7 @@ class Servos(RunTest):
         self.assertEqual((servo["wall"], servo["touched"], result["complete"]), ("lid", False, False))
         self.assertLess(result["time"], 0.1)
         self.check_there(gone, "grains.csv", "contacts.csv", "energy.csv", "picture.png", "case.toml", "index.html")
-        # of stages, those before it are told
+        # of stages, those before it are named
         staged = PRESS + SERVO + "[run]\n" + stage("press", 0.01) + stage("fling", 10.0, stage_wall("lid", away))
         out = self.folder / "out"
         result = self.check_partial(equidem("run", self.write(staged), "--out", out, NO_PICTURE), "'lid'", out=out)

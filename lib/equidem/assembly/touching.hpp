@@ -14,8 +14,7 @@ namespace equidem {
 
 /// The pairs of discs, and of discs and images across the period, whose gap is at most `gap_tolerance` times the sum of
 /// their radii; 0: those that overlap, or whose gap is at most 1e-9 of the smaller radius. Each once, ascending by i,
-/// then j (i <= j), then shift. The contact point divides the branch as
-/// the radii do.
+/// then j (i <= j), then shift. The contact point divides the branch as the radii do.
 /// \param gap_tolerance from 0 to 1
 /// \throws Error (bad_input) where a disc is many times wider than the period or lies too many periods away
 std::vector<Contact> touching_discs(const Assembly& assembly, double gap_tolerance = 0);

@@ -110,17 +110,19 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
     bad_input("the strengths are stresses on facets", "the facets of this assembly are not known",
               "Take bond_length = \"smaller_diameter\", or strengths in N/m");
   }
-  const std::vector<PairStrengths> of_groups =
-      values_of(assembly, PairStrengths{*options.tension, *options.shear}, options.between,
-                [](const PairStrengths& a, const PairStrengths& b) -> PairStrengths {
-                  return {std::min(a.tension, b.tension), std::min(a.shear, b.shear)};
-                });
+  const PairStrengths elsewhere{*options.tension, *options.shear};
+  const auto weaker = [](const PairStrengths& a, const PairStrengths& b) -> PairStrengths {
+    return {std::min(a.tension, b.tension), std::min(a.shear, b.shear)};
+  };
+  std::vector<PairStrengths> of_groups;
+  if (!options.between.empty())
+    of_groups = Materials(assembly, options.between).of_contacts(elsewhere, options.between, weaker);
   Random random(options.seed);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const double share =
         options.weibull_modulus ? std::pow(-std::log1p(-random.uniform()), 1 / *options.weibull_modulus) : 1;
     const double size = share * length_of(assembly, c, options.bond_length);
-    const PairStrengths of_contact = of_groups.empty() ? PairStrengths{*options.tension, *options.shear} : of_groups[c];
+    const PairStrengths of_contact = of_groups.empty() ? elsewhere : of_groups[c];
     result.tension.push_back(size * of_contact.tension);
     result.shear.push_back(size * of_contact.shear);
   }

@@ -60,7 +60,7 @@ struct StrengthOptions {
   AfterBreaking after_breaking = AfterBreaking::gone;
   /// mu >= 0 of contacts without a bond, where they are frictional. None: `friction`.
   std::optional<double> residual_friction = {};
-  /// Of pairs of groups; one that is not named is as strong as the weaker inside of either group.
+  /// Pairs of groups have strengths of their own; one that is not named is as strong as the weaker inside of either.
   std::vector<OfPair<PairStrengths>> between = {};
 };
 

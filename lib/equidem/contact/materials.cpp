@@ -45,7 +45,7 @@ std::vector<std::vector<std::int32_t>> discs_of_cells(const Assembly& assembly, 
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
     const Vec2 at = assembly.centres[disc];
     const Point x(at.x, at.y);
-    // Of several points at the same distance the first one.
+    // The first one is taken where several points are at the same distance.
     std::size_t first = std::numeric_limits<std::size_t>::max();
     double least = std::numeric_limits<double>::infinity();
     for (auto near = tree.qbegin(boost::geometry::index::nearest(x, static_cast<unsigned>(points.size())));
@@ -89,6 +89,7 @@ void draw_groups(Assembly& assembly, std::span<const GroupShare> shares, const G
     bad_input(
         fmt::format("{} are wanted of {}", counted(*draw.cells, "cell"), counted(std::ssize(assembly.centres), "disc")),
         "a cell is some discs wide", "Give fewer cells");
+  for (const GroupShare& group : shares) assembly.groups[group.name] = {};  // no cell is called so
   Random random(draw.seed);
   std::vector<std::vector<std::int32_t>> parts;
   if (draw.cells) {
@@ -156,6 +157,17 @@ std::optional<std::size_t> Materials::named(std::size_t a, std::size_t b, bool a
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (pairs_[k][0] == std::min(a, b) && pairs_[k][1] == std::max(a, b) && across_[k] == across) return k;
   return {};
+}
+
+bool Materials::joined_across(const Place& place) const {
+  return place.across && place.i != place.j && !named(place.i, place.j, true) && named(place.i, place.i, true) &&
+         named(place.j, place.j, true);
+}
+
+std::optional<std::size_t> Materials::pair_at(const Place& place) const {
+  if (joined_across(place)) return {};
+  const auto across = place.across ? named(place.i, place.j, true) : std::nullopt;
+  return across ? across : named(place.i, place.j, false);
 }
 
 SpringConstants in_series(const SpringConstants& a, const SpringConstants& b) {

@@ -73,29 +73,25 @@ class Materials {
 
   /// The property of each contact: as given for its pair; of a pair that is not named `join` of those inside either
   /// group, and inside a group that is not named, or of discs without a group, `elsewhere`. Contacts between two cells
-  /// have what is given for these first, else what all contacts of the pair have.
-  /// \param properties of the pairs, in their order
+  /// have what is given for these first, else what all contacts of the pair have. Only pairs that occur are joined.
+  /// \param pairs as of the constructor
   template <typename Property, typename Join>
-  std::vector<Property> of_contacts(const Property& elsewhere, const std::vector<Property>& properties,
+  std::vector<Property> of_contacts(const Property& elsewhere, const std::vector<OfPair<Property>>& pairs,
                                     const Join& join) const {
     const std::size_t count = names_.size() + 1;
-    std::vector<Property> table;
-    for (const bool across : {false, true}) {
-      for (std::size_t a = 0; a < count; ++a)
-        for (std::size_t b = 0; b < count; ++b) table.push_back(lookup(a, b, across, elsewhere, properties, join));
-    }
+    std::vector<std::optional<Property>> known(2 * count * count);
     std::vector<Property> result;
     result.reserve(contacts_.size());
-    for (const Place& place : contacts_) result.push_back(table[(place.across * count + place.i) * count + place.j]);
+    for (const Place& place : contacts_) {
+      auto& property = known[(place.across * count + place.i) * count + place.j];
+      if (!property) property = property_at(place, elsewhere, pairs, join);
+      result.push_back(*property);
+    }
     return result;
   }
 
-  /// The pair whose property a contact has; none where its pair is not named.
-  [[nodiscard]] std::optional<std::size_t> pair_of(std::size_t contact) const {
-    const Place& place = contacts_[contact];
-    const auto pair = place.across ? named(place.i, place.j, true) : std::nullopt;
-    return pair ? pair : named(place.i, place.j, false);
-  }
+  /// The pair that gives a contact its property; none where no pair does, or two are joined.
+  [[nodiscard]] std::optional<std::size_t> pair_of(std::size_t contact) const { return pair_at(contacts_[contact]); }
 
  private:
   /// Groups of the two discs: 0 none, else 1 + the number of the name.
@@ -112,18 +108,21 @@ class Materials {
   }
 
   [[nodiscard]] std::optional<std::size_t> named(std::size_t a, std::size_t b, bool across) const;
+  /// Whether contacts between cells of the two groups have the properties of those inside either, joined.
+  [[nodiscard]] bool joined_across(const Place& place) const;
+  [[nodiscard]] std::optional<std::size_t> pair_at(const Place& place) const;
 
   template <typename Property, typename Join>
-  Property lookup(std::size_t a, std::size_t b, bool across, const Property& elsewhere,
-                  const std::vector<Property>& properties, const Join& join) const {
-    if (const auto pair = named(a, b, across)) return properties[*pair];
-    if (across) {
-      const auto in_a = named(a, a, true), in_b = named(b, b, true);
-      if (in_a && in_b) return join(properties[*in_a], properties[*in_b]);
-      return lookup(a, b, false, elsewhere, properties, join);
-    }
-    if (a == b) return elsewhere;
-    return join(lookup(a, a, false, elsewhere, properties, join), lookup(b, b, false, elsewhere, properties, join));
+  Property property_at(const Place& place, const Property& elsewhere, const std::vector<OfPair<Property>>& pairs,
+                       const Join& join) const {
+    if (const auto pair = pair_at(place)) return pairs[*pair].property;
+    if (place.i == place.j) return elsewhere;
+    const bool across = joined_across(place);
+    const auto inside = [&](std::size_t group) {
+      const auto pair = named(group, group, across);
+      return pair ? pairs[*pair].property : elsewhere;
+    };
+    return join(inside(place.i), inside(place.j));
   }
 
   std::vector<std::string> names_;
@@ -131,16 +130,6 @@ class Materials {
   std::vector<bool> across_;                       ///< by pair
   std::vector<Place> contacts_;
 };
-
-/// Materials::of_contacts of properties with their pairs; empty where there is no pair.
-template <typename Property, typename Join>
-std::vector<Property> values_of(const Assembly& assembly, const Property& elsewhere,
-                                const std::vector<OfPair<Property>>& pairs, const Join& join) {
-  if (pairs.empty()) return {};
-  std::vector<Property> properties;
-  for (const OfPair<Property>& pair : pairs) properties.push_back(pair.property);
-  return Materials(assembly, pairs).of_contacts(elsewhere, properties, join);
-}
 
 /// Springs of half a contact of each material in series: 2 a b/(a + b), 0 where one is 0.
 /// \throws Error (bad_input) where a tangential spring is negative

@@ -55,7 +55,8 @@ Results changes_of(const std::string& name, const EffectiveModuli& m, const Modu
       .add("poisson_ratio", "dnu", change.poisson_ratio, "", shown);
 }
 
-/// What the springs of each pair of groups do by one common factor, and where these factors scatter independently.
+/// Adds the changes by one common factor of the springs of each pair of groups, and their scatter where these factors
+/// scatter independently.
 void add_pairs(std::vector<Results>& rows, Results& of_kinds, const Problem& problem, const Matrix3& stiffness,
                const SpringSensitivities& found) {
   const auto& pairs = problem.resolved.springs_between;

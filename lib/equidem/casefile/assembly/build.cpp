@@ -105,8 +105,8 @@ std::string described(const MaterialCase& material, const SpringConstants& sprin
 }
 
 /// "; quartz: 120 discs; quartz, quartz: kN = 1e+09 Pa, kT = 5e+08 Pa at 312 contacts"
-std::string described(const std::vector<OfPair<SpringConstants>>& between, const Assembly& assembly) {
-  const Materials materials(assembly, between);
+std::string described(const std::vector<OfPair<SpringConstants>>& between, const Assembly& assembly,
+                      const Materials& materials) {
   std::vector<std::int64_t> counts(between.size(), 0);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c)
     if (const auto pair = materials.pair_of(c)) ++counts[*pair];
@@ -122,8 +122,8 @@ std::string described(const std::vector<OfPair<SpringConstants>>& between, const
 }
 
 /// The springs of the case at each contact: those of the two groups of its discs, weighted.
-ContactSprings springs_between(const Case& resolved, const Assembly& assembly) {
-  std::vector<SpringConstants> springs = values_of(assembly, *resolved.springs, resolved.springs_between, in_series);
+ContactSprings springs_between(const Case& resolved, const Assembly& assembly, const Materials& materials) {
+  std::vector<SpringConstants> springs = materials.of_contacts(*resolved.springs, resolved.springs_between, in_series);
   const ContactSprings weights = contact_springs(assembly, {1, 1}, resolved.weighting);
   for (std::size_t c = 0; c < springs.size(); ++c) {
     const double weight = weights[c].kN;
@@ -194,10 +194,13 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
   }
   const auto built = [&]() -> BuiltSprings {
     if (own) return {contact_springs(assembly, {}, resolved.weighting), {}, "springs of the assembly file"};
-    if (!resolved.springs_between.empty())
-      return {springs_between(resolved, assembly),
-              {},
-              described(*resolved.springs, resolved.weighting) + described(resolved.springs_between, assembly)};
+    if (!resolved.springs_between.empty()) {
+      const Materials materials(assembly, resolved.springs_between);
+      return {
+          springs_between(resolved, assembly, materials),
+          {},
+          described(*resolved.springs, resolved.weighting) + described(resolved.springs_between, assembly, materials)};
+    }
     if (!resolved.material) {
       return {contact_springs(assembly, *resolved.springs, resolved.weighting), *resolved.springs,
               described(*resolved.springs, resolved.weighting)};
