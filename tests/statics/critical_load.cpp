@@ -123,8 +123,9 @@ TEST_CASE("the_critical_load_of_a_column_is_the_eigenvalue_of_its_dense_pencil")
   const CriticalLoad found = find_critical_load(column, prestressed(column), clamped);
   const double expected = dense_critical_load(sorted, 3 * static_cast<std::size_t>(rows));
 
-  CAPTURE(columns, rows, found.factor, expected, found.factorizations, found.why);
-  CHECK(found.factor == Approx(expected).epsilon(1e-10));
+  CAPTURE(columns, rows, found.factor, found.width, expected, found.factorizations, found.why);
+  CHECK(std::abs(found.factor - expected) <= found.width * expected);
+  CHECK((found.width > 0 && found.width < 1e-9));
   CHECK(found.motion.size() == column.size());
   CHECK(found.factorizations < 40);
 }

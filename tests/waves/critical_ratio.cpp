@@ -100,3 +100,22 @@ TEST_CASE("a_free_body_gives_way_as_one_on_three_supports") {
   const double held = find_critical_ratio(block, equal, three).ratio;
   CHECK(std::abs(free - held) < 2e-10);
 }
+
+// It hangs from one contact: three unknowns, and two springs that resist them for any ratio.
+TEST_CASE("a_disc_on_one_contact_swings_freely_and_leaves_the_critical_ratio_as_it_is") {
+  Assembly block = hexagonal_lattice({.columns = 5, .rows = 5});
+  const std::vector<Support> three{{"bottom_left", 0.0, 0.0, {}}, {"bottom_right", {}, 0.0, {}}};
+  const CriticalRatio alone = find_critical_ratio(block, unit_springs, three);
+  const std::int32_t last = static_cast<std::int32_t>(block.size()) - 1;
+  block.centres.push_back(block.centres[last] + Vec2{0, 2 * block.radii[last]});
+  block.radii.push_back(block.radii[last]);
+  block.cell_areas.clear();
+  block.facet_lengths.clear();
+  block.contacts.push_back({last, last + 1, 0, 0, block.radii[last], block.radii[last]});
+  const CriticalRatio hung = find_critical_ratio(block, unit_springs, three);
+  CAPTURE(alone.ratio, hung.ratio, hung.factorizations);
+  CHECK(alone.mechanisms == 0);
+  CHECK(hung.mechanisms == 1);
+  CHECK(std::abs(hung.ratio - alone.ratio) < 2e-10);
+  CHECK(hung.motion.empty());
+}
