@@ -284,7 +284,7 @@ std::vector<OutputPart> output_parts(const std::shared_ptr<const Packed>& packed
     assemblies.push_back(assembly_file_name("assembly_with_walls", resolved.assembly));
   if (resolved.csv) tables.emplace_back("grains.csv");
   if (resolved.csv && resolved.packing.shape.kind == PackingShape::Kind::bonded_pair) tables.emplace_back("bonds.csv");
-  if (resolved.picture) pictures.emplace_back("picture.png");
+  if (resolved.picture) pictures = {"picture.svg", "picture.png"};
   const auto part = [&](const char* name, auto write, OutputPart::Place place, const std::vector<std::string>& files) {
     return OutputPart{name, [=](const CommonOptions& into) { write(into, *packed); }, place, files};
   };

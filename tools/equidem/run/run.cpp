@@ -470,6 +470,13 @@ void run(const RunVerb& options) {
 
 }  // namespace
 
+std::vector<std::string> files_of_steps(const OutputCase& output) {
+  std::vector<std::string> files{"run.checkpoint.h5"};
+  if (output.probe_interval) files.emplace_back("history.csv");
+  if (output.frame_interval) files.emplace_back("frames.pvd");
+  return files;
+}
+
 const char* energy_unit(Body body) {
   return body == Body::disc ? "J per m of depth" : "J";
 }

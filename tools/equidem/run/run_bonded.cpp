@@ -312,19 +312,21 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
   state_part(output.csv, "discs.csv", {"discs.csv"}, [](const CommonOptions& into, const AssemblyState& state) {
     write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
   });
-  state_part(output.vtk, "the state for ParaView", {}, [](const CommonOptions& into, const AssemblyState& state) {
-    write_vtk(*into.out, "state", state, into.overwrite);
-  });
+  state_part(output.vtk, "the state for ParaView", {"state.vtm", "state_discs.vtp", "state_contacts.vtp"},
+             [](const CommonOptions& into, const AssemblyState& state) {
+               write_vtk(*into.out, "state", state, into.overwrite);
+             });
   const auto draw = [this](const CommonOptions& into, const AssemblyState& state) {
     const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
     write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
   };
-  state_part(output.picture, "the picture", {"picture.svg"}, draw);
+  state_part(output.picture, "the picture", {"picture.svg", "picture.png"}, draw);
   if (goes_to_rest()) return parts;
+  std::ranges::move(files_of_steps(output), std::back_inserter(parts.front().files));
   const auto draw_energies = [this, &result](const CommonOptions& into) {
     write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
   };
-  parts.push_back({"the plot of energies", draw_energies, OutputPart::page});
+  parts.push_back({"the plot of energies", draw_energies, OutputPart::page, plot_files("energy")});
   const auto draw_film = [this, &result](const CommonOptions& /*into*/) {
     add_film(problem_.resolved.title, problem_.assembly, result.record.film);
   };

@@ -202,6 +202,15 @@ std::pair<CoarseGrid, std::string> GrainMeasures::grid_of_fields() const {
   }
 }
 
+std::vector<std::string> GrainMeasures::files(const GrainCase& resolved) {
+  std::vector<std::string> files{table_name, profiles_name};
+  if (resolved.output.picture)
+    for (const char* plot : {"surface_plot", "void_ratio_plot"})
+      std::ranges::move(plot_files(plot), std::back_inserter(files));
+  if (resolved.measures->cell) files.insert(files.end(), {"fields.csv", "fields.vti", "fields.png"});
+  return files;
+}
+
 void GrainMeasures::write_files(const CommonOptions& into) const {
   const std::filesystem::path& folder = *into.out;
   if (resolved_.output.picture) {
@@ -230,7 +239,6 @@ void GrainMeasures::write_files(const CommonOptions& into) const {
 void write_probe_paths(const CommonOptions& into, const GrainCase& resolved) {
   constexpr PlotColour colours[] = {PlotColour::blue,     PlotColour::vermilion, PlotColour::green,  PlotColour::orange,
                                     PlotColour::sky_blue, PlotColour::purple,    PlotColour::yellow, PlotColour::black};
-  if (!resolved.output.probe_interval) return;
   const auto cells = csv_cells(read_file(*into.out / "history.csv"));
   Plot plot{.title = resolved.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
   const auto& names = cells.front();
@@ -553,18 +561,18 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
   std::vector<OutputPart> parts{case_part([this]() -> const TomlValue& { return case_.document; })};
-  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write,
-                        std::vector<std::string> files = {}) {
+  const auto part = [&](const char* name, std::vector<std::string> files,
+                        std::function<void(const CommonOptions&)> write) {
     parts.push_back({name, std::move(write), OutputPart::page, std::move(files)});
   };
   const auto write_energies = [this, &result](const CommonOptions& into) {
     write_energy_csv(*into.out / "energy.csv", result.record.energies, BodyFamily::colliding, case_.body,
                      into.overwrite);
   };
-  part("energy.csv", write_energies, {"energy.csv"});
+  part("energy.csv", {"energy.csv"}, write_energies);
   if (case_.output.csv) {
-    part("grains.csv", [this](const CommonOptions& into) { write_tables(into); }, {"grains.csv"});
-    part("contacts.csv", [this](const CommonOptions& into) {
+    part("grains.csv", {"grains.csv"}, [this](const CommonOptions& into) { write_tables(into); });
+    part("contacts.csv", {"contacts.csv"}, [this](const CommonOptions& into) {
       const Snapshot now = snapshot();
       std::vector<GrainContact> contacts = simulation_.present().contacts();
       const auto place = [&](std::int32_t body) { return static_cast<std::int32_t>(now.places[body]); };
@@ -576,17 +584,23 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       const StagedSimulation::HoldingBonds holding = snapshot().bonds;
       write_bond_csv(*into.out / "bonds.csv", holding.bonds, holding.strengths, into.overwrite);
     };
-    part("bonds.csv", write_bonds,
-         case_.scene.bonds.empty() ? std::vector<std::string>{} : std::vector<std::string>{"bonds.csv"});
+    part("bonds.csv", std::vector<std::string>(case_.scene.bonds.empty() ? 0 : 1, "bonds.csv"), write_bonds);
   }
-  part("the table of breaks", [this](const CommonOptions& into) { write_breaks(into); });
+  if (case_.scene.strengths) {
+    std::vector<std::string> files = case_.output.picture ? plot_files("breaks_plot") : std::vector<std::string>{};
+    if (case_.output.csv) files.emplace_back("breaks.csv");
+    part("the table of breaks", files, [this](const CommonOptions& into) { write_breaks(into); });
+  }
   if (case_.output.picture) {
-    part("the picture", [this, &result](const CommonOptions& into) { draw(into, result); }, {"picture.png"});
-    part("the plot of energies", [this, &result](const CommonOptions& into) {
+    part("the picture", {"picture.svg", "picture.png"},
+         [this, &result](const CommonOptions& into) { draw(into, result); });
+    part("the plot of energies", plot_files("energy_plot"), [this, &result](const CommonOptions& into) {
       write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, further);
     });
-    part("the paths of probes", [this](const CommonOptions& into) { write_probe_paths(into, case_); });
-    part("the film", [this, &result](const CommonOptions& /*into*/) {
+    if (case_.output.probe_interval && !case_.probes.empty())
+      part("the paths of probes", plot_files("paths_plot"),
+           [this](const CommonOptions& into) { write_probe_paths(into, case_); });
+    part("the film", {}, [this, &result](const CommonOptions& /*into*/) {
       std::vector<int> first_colours;
       for (const std::string& group : case_.groups) first_colours.push_back(colour_of(group));
       // where paths are drawn, pictures show where each body went
@@ -599,8 +613,9 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
     const auto write_measures = [this](const CommonOptions& into) {
       if (measures_->last_step() >= 0) measures_->write_files(into);
     };
-    part("the measures", write_measures, {"measures.csv"});
+    part("the measures", GrainMeasures::files(case_), write_measures);
   }
+  std::ranges::move(files_of_steps(case_.output), std::back_inserter(parts.front().files));
   for (std::size_t k = 0; k + 1 < case_.stages.size(); ++k)  // the run itself writes them
     parts.front().files.push_back(fmt::format("run.{}.checkpoint.h5", case_.stages[k].name));
   return parts;

@@ -40,6 +40,8 @@ class GrainMeasures final : public RunRecorder {
 
   /// measures: before and after, after the last step.
   [[nodiscard]] Results results() const;
+  /// The names of all files of measures.
+  static std::vector<std::string> files(const GrainCase& resolved);
   /// surface_plot: the surface before and at the end; void_ratio_plot; fields where asked for.
   void write_files(const CommonOptions& into) const;
 

@@ -437,7 +437,6 @@ Results GrainRun::breaks() const {
 
 /// breaks.csv, in the order of time; with pictures breaks_plot, their places by mode.
 void GrainRun::write_breaks(const CommonOptions& into) const {
-  if (!case_.scene.strengths) return;
   const std::filesystem::path& folder = *into.out;
   const std::vector<BondBreak> breaks = simulation_.breaks();
   if (case_.output.csv) {

@@ -66,6 +66,9 @@ class RunJob {
 std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
                                      const std::optional<std::filesystem::path>& begin_from = {});
 
+/// The files in --out that the steps themselves write.
+std::vector<std::string> files_of_steps(const OutputCase& output);
+
 /// "J per m of depth", "J".
 const char* energy_unit(Body body);
 
