@@ -173,18 +173,25 @@ TEST_CASE("a_known_uniform_field_is_read_exactly_whatever_the_assembly_and_the_g
   }
 }
 
+// The nearest disc lies within three quarters of a spacing of a point.
 TEST_CASE("gauges_of_a_random_block_are_four_discs_near_their_points") {
   const Assembly assembly = delaunay_assembly({.discs = 400, .seed = 5});
+  const Rectangle extents = upright_rectangle(assembly.centres);
+  double spacing = 0;
+  for (const Contact& c : assembly.contacts)
+    spacing += norm(assembly.branch(c)) / static_cast<double>(assembly.contacts.size());
   for (const GaugePlacement placement : gauge_placements) {
     const TensionSetup setup = tension_setup(assembly, {.stress = 1, .gauge = placement});
     const Vec2 A = assembly.centres[setup.horizontal.first], B = assembly.centres[setup.horizontal.second];
     const Vec2 C = assembly.centres[setup.vertical.first], D = assembly.centres[setup.vertical.second];
-    CAPTURE(to_string(placement), A.x, A.y, B.x, B.y, C.x, C.y, D.x, D.y);
-    const double diameter = 2 * assembly.mean_radius();
-    CHECK(B.x - A.x > (placement == GaugePlacement::centre ? 2 : 6) * diameter);
-    CHECK(D.y - C.y > (placement == GaugePlacement::centre ? 2 : 6) * diameter);
-    CHECK(std::abs(B.y - A.y) < 2 * diameter);
-    CHECK(std::abs(D.x - C.x) < 2 * diameter);
+    CAPTURE(to_string(placement), spacing, A.x, A.y, B.x, B.y, C.x, C.y, D.x, D.y);
+    const auto length = [&](double extent) {
+      if (placement == GaugePlacement::centre) return 4 * spacing;
+      return placement == GaugePlacement::quarter ? extent / 2 : extent;
+    };
+    const Vec2 along{length(extents.high.x - extents.low.x), 0}, up{0, length(extents.high.y - extents.low.y)};
+    CHECK(norm(B - A - along) < 1.5 * spacing);
+    CHECK(norm(D - C - up) < 1.5 * spacing);
   }
 }
 
