@@ -292,6 +292,30 @@ TEST_CASE("a_held_motion_never_falls_and_a_held_load_neither") {
   }
 }
 
+// Two discs of the cell pull at each other from the start: load S = stress : strain, with the stress of those forces.
+TEST_CASE("the_load_of_a_strained_cell_is_its_stress_on_the_strain_with_dead_loads_too") {
+  Assembly cell = hexagonal_lattice({.columns = 8, .rows = 8, .radius = 0.5, .periodic = true});
+  cell.groups["one"] = {{9}, {}};
+  cell.groups["other"] = {{45}, {}};
+  const ContactStrengths strengths =
+      contact_strengths(cell, {.tension = 1, .shear = 2, .friction = 0.4, .weibull_modulus = 4, .seed = 3});
+  const Voigt strain{1e-3, -2e-4, 5e-4};
+  LoadPathOptions options;
+  options.strain = strain;
+  const Vec2 pull = GENERATE(Vec2{0, 0}, Vec2{0.5, 0.2}, Vec2{-0.1, 0.4});
+  options.dead_loads = {{"one", LoadKind::per_disc, pull, 0}, {"other", LoadKind::per_disc, -pull, 0}};
+  Broken b(cell, pair_springs, strengths, options);
+  b.all();
+  REQUIRE(b.events().size() > 20);
+  for (const BreakEvent& event : b.events()) {
+    const double work = event.stress.xx * strain.xx + event.stress.yy * strain.yy +
+                        0.5 * (event.stress.xy + event.stress.yx) * strain.xy;
+    CAPTURE(pull.x, pull.y, event.lambda, event.load, work / 1e-3);
+    CHECK(std::abs(event.load - work / 1e-3) < 1e-11 * (1 + norm(pull)));
+  }
+  CHECK(b.run().energy_error() < 1e-10);
+}
+
 TEST_CASE("a_contact_of_two_groups_is_as_strong_as_given_or_as_the_weaker_of_both") {
   Assembly chain = chain_of_discs(7, 1);
   chain.groups["a"] = {{0, 1, 2}, {}};

@@ -95,6 +95,28 @@ TEST_CASE("a_chain_breaks_at_one_load_and_elongation_at_any_angle_and_whichever_
   }
 }
 
+// The contact lets go at its strength, of which the dead load on the disc takes its part and the support the rest.
+TEST_CASE("a_support_that_moves_a_disc_carries_what_the_dead_load_on_it_does_not") {
+  constexpr double strength = 5;
+  const double pull = GENERATE(-3.0, 0.0, 2.0);
+  const Assembly chain = chain_of_discs(2, 1);
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 1e-3, 0, 0}};
+  options.dead_loads = {{"last", LoadKind::per_disc, {pull, 0}, 0}};
+  options.control = LoadControl::motion;
+  options.legs = {1};
+  const ContactSprings springs(SpringConstants{1e6, 0.3e6});
+  Broken gone(chain, springs, equal_strengths(chain, strength, 1e9), options);
+  Unbonded frictional(chain, springs, equal_strengths(chain, strength, 1e9), options, {0.4, {}});
+  REQUIRE(gone.all().events().size() == 1);
+  REQUIRE(!frictional.all().events().empty());
+  for (const BreakEvent& event : {gone.event(0), frictional.event(0)}) {
+    CAPTURE(pull, event.load, event.motion);
+    CHECK(std::abs(event.load - (strength - pull)) < 1e-9 * strength);
+    CHECK(std::abs(event.motion - strength / 1e6) < 1e-9 * strength / 1e6);
+  }
+}
+
 TEST_CASE("a_sample_has_one_curve_however_it_is_turned_and_whichever_side_moves") {
   const NotchedSample sample;
   for (const bool loads : {false, true}) {
