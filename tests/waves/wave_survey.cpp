@@ -89,6 +89,24 @@ TEST_CASE("a_compressed_lattice_buckles_by_the_wave_that_its_forces_outweigh") {
   }
 }
 
+TEST_CASE("waves_and_continuum_of_one_analysis_have_one_mass_and_one_sound") {
+  constexpr double density = 2600;
+  const Assembly cell = GENERATE(periodic_hexagonal(3, 4), random_cell(12, 4));
+  const Stability s = analyze_stability(cell, ContactSprings(SpringConstants{1e9, 0.4e9}), {}, {.density = density});
+  double discs = 0;
+  for (const double radius : cell.radii) discs += std::numbers::pi * radius * radius;
+  CAPTURE(cell.size(), s.mass_per_area, s.no_continuum);
+  CHECK(s.mass_per_area == Approx(density * discs / cell.area()).epsilon(1e-12));
+  REQUIRE(s.survey);
+  REQUIRE(s.sound.size() == s.survey->sound.size());
+  for (std::size_t k = 0; k < s.sound.size(); ++k) {
+    const BlochWaves::SoundSpeeds& waves = s.survey->sound[k].speeds;
+    CAPTURE(s.survey->sound[k].angle, waves.longitudinal_squared, waves.transverse_squared);
+    CHECK(s.sound[k].longitudinal_squared == Approx(waves.longitudinal_squared).epsilon(1e-8));
+    CHECK(s.sound[k].transverse_squared == Approx(waves.transverse_squared).epsilon(1e-8));
+  }
+}
+
 TEST_CASE("spins_that_grow_where_kT_is_negative_are_no_buckling_under_forces_at_rest") {
   const Assembly lattice = periodic_hexagonal(3, 4);
   const ContactSprings springs = under_forces(lattice, ContactSprings({1, -0.05}), 0.001);
