@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/core/table_file.hpp"
 
-#include <chrono>
 #include <string>
 #include <vector>
 
@@ -133,20 +132,14 @@ TEST_CASE("what_a_table_cannot_mean_is_a_sentence_with_its_line") {
                            "e\nx,r\n1,2\n") == "(accepted)");  // a comment may be anything
 }
 
-TEST_CASE("tables_of_many_columns_are_read_in_linear_time") {
-  const auto seconds = [](int columns) {
-    std::string names = "x,r", row = "1,2";
-    for (int c = 0; c < columns; ++c) {
-      names += fmt::format(",column_{}", c);
-      row += ",0";
-    }
-    const auto start = std::chrono::steady_clock::now();
-    CHECK(numbers(names + "\n" + row + "\n").size() == 1);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  const double many = seconds(100000);
-  CAPTURE(many);
-  CHECK(many < 2);
+// A search of all names for each would take longer than a test may.
+TEST_CASE("a_table_of_a_million_columns_is_read") {
+  std::string names = "x,r", row = "1,2";
+  for (int c = 0; c < 1000000; ++c) {
+    names += fmt::format(",column_{}", c);
+    row += ",0";
+  }
+  CHECK(numbers(names + "\n" + row + "\n").size() == 1);
 }
 
 TEST_CASE("a_number_is_read_from_the_whole_of_a_text") {

@@ -272,7 +272,7 @@ TEST_CASE("a_gnuplot_that_ignores_signals_is_killed_with_all_that_it_has_started
   CAPTURE(run.reason);
   CHECK_FALSE(run.succeeded);
   CHECK(run.timed_out);
-  CHECK(watch.seconds() < 5);  // not the 100 s of what holds its stderr
+  CHECK(watch.seconds() < 50);  // not the 100 s of what holds its stderr
 }
 
 TEST_CASE("no_part_of_a_picture_is_left_behind") {

@@ -212,9 +212,7 @@ class Accuracy(ProgramTest):
         for verb, case, told in (("solve", TENSION, "9 rows"), ("solve", CANTILEVER, "error bound is compared"),
                                  ("homogenize", LATTICE, "error bound is compared"), ("homogenize", CELL, "cells of"),
                                  ("run", BAR[0], "root 2")):
-            start = time.monotonic()
             self.assertIn(told, self.report(verb, case, "--accuracy", "1e-3", "--dry-run", "--out", self.folder / "out"))
-            self.assertLess(time.monotonic() - start, 20)
             self.assertFalse((self.folder / "out").exists())
 
     def test_what_cannot_be_reached_gives_the_best_there_is_and_the_reason(self):

@@ -47,7 +47,9 @@ namespace {
 
 std::atomic<bool> progress_shown{true};
 std::atomic<int> existing{0};
-volatile std::sig_atomic_t stop_asked = 0;
+/// Set by a handler on any thread, and read by all.
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "signal handlers may touch no other");
 timespec asked_at = {};
 
 double seconds_since(const timespec& then) {
@@ -61,10 +63,10 @@ void ask_to_stop(int signal_number) {
   constexpr std::string_view answer = "stopping: what is done is written first; a second signal ends this at once\n";
   constexpr double one_request = 0.5;  // s
   const int error = errno;
-  if (stop_asked == 0) {
+  if (!stop_asked) {
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, answer.data(), answer.size());
     clock_gettime(CLOCK_MONOTONIC, &asked_at);
-    stop_asked = 1;
+    stop_asked = true;
   } else if (signal_number != SIGHUP && seconds_since(asked_at) > one_request) {
     // of a terminal that closes, SIGHUP comes from the system and from its shell
     std::signal(signal_number, SIG_DFL);
@@ -126,13 +128,13 @@ void catch_interrupts() {
 
 InterruptCatcher::InterruptCatcher() {
   struct sigaction caught = {};
-  caught.sa_handler = [](int) { stop_asked = 1; };
+  caught.sa_handler = [](int) { stop_asked = true; };
   sigaction(SIGINT, &caught, &before_);
 }
 
 InterruptCatcher::~InterruptCatcher() {
   sigaction(SIGINT, &before_, nullptr);
-  stop_asked = 0;
+  stop_asked = false;
 }
 
 void set_progress_display(std::function<void(const std::string&)> shown_by) {
@@ -140,7 +142,7 @@ void set_progress_display(std::function<void(const std::string&)> shown_by) {
 }
 
 void stop_if_interrupted() {
-  if (stop_asked != 0 && !StopsHeldBack::any()) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
+  if (stop_asked && !StopsHeldBack::any()) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
 }
 
 namespace {
