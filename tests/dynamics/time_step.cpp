@@ -152,7 +152,7 @@ TEST_CASE("steps_that_cannot_work_are_refused_with_the_limit") {
 // A disc that spins alone, six contacts with equal levers r: omega² = 6 kT r²/I. No motion grows faster than all of
 // them together.
 TEST_CASE("negative_kT_is_found_however_small_it_is") {
-  const Assembly assembly = hexagonal_block(12);
+  const Assembly assembly = hexagonal_lattice({.columns = 12, .rows = 12, .radius = 0.3});
   const double ratio = GENERATE(1e-1, 1e-3, 1e-5, 1e-8, 1e-13);
   const ContactSprings springs(SpringConstants{1, -ratio});
   Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
