@@ -202,7 +202,7 @@ class Refused(ResumeTest):
                 self.assertIn("events.csv: the last line is cut short; going on behind 11 events", done.stderr)
                 self.check_same_events(whole, part)
         self.assertNotIn("cut short", self.check_done(resumed("".join(rows)[:-1])).stderr)
-        self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to go on from")
+        self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to continue")
 
     def test_a_kept_state_that_was_altered_is_refused_and_one_that_is_missing_is_computed_again(self):
         options, out = ("quasistatic.max_events=20",), self.folder / "frictional"

@@ -186,6 +186,12 @@ void expect_json(const CommonOptions& options) {
   if (options.json && *options.json != "-") check_named(*options.json, options.overwrite);
 }
 
+void expect_folder_of(const CommonOptions& options, const std::string& what) {
+  if (!options.out)
+    bad_input("--resume has nothing to continue", what + " would lie in the folder of --out",
+              "Add --out with the folder of the computation that is to go on");
+}
+
 void expect_results(const CommonOptions& options, const std::vector<OutputPart>& parts, bool replaces) {
   namespace fs = std::filesystem;
   std::vector<fs::path> taken;

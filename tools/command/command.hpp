@@ -123,6 +123,11 @@ OutputPart case_part(const Resolved& resolved, const std::string& note = {}) {
 /// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
 /// \throws Error (bad_input) where one could not be written, or two go to one place
 void expect_results(const CommonOptions& options, const std::vector<OutputPart>& parts, bool replaces = false);
+/// What to do where --resume finds what it cannot continue.
+inline constexpr const char* begin_anew = "Choose another --out, or leave out --resume and pass --overwrite";
+/// \param what lies in --out: "the events"
+/// \throws Error (bad_input) of --resume without --out
+void expect_folder_of(const CommonOptions& options, const std::string& what);
 /// The file of --json alone, in an existing folder: a missing one is probably a typing error.
 /// \throws Error (bad_input)
 void expect_json(const CommonOptions& options);

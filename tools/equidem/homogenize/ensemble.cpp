@@ -61,8 +61,7 @@ Table samples_table(const std::vector<EnsembleSample>& samples) {
 /// Reads a table of samples_table; numbers have the same bits.
 /// \throws Error (bad_input) where the file is another table or damaged
 std::vector<EnsembleSample> read_samples(const std::filesystem::path& path) {
-  const StoredTable table(path, samples_table({}), "ensemble",
-                          "Choose another --out, or leave out --resume and pass --overwrite");
+  const StoredTable table(path, samples_table({}), "ensemble", begin_anew);
   std::vector<EnsembleSample> samples(table.rows());
   for (std::size_t row = 0; row < samples.size(); ++row) {
     EnsembleSample& sample = samples[row];
@@ -421,8 +420,7 @@ std::string continued_part(CommonOptions options, const std::filesystem::path& f
 /// \param note of the files that the case reads
 std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool resume, const std::string& note) {
   if (!resume) return {};
-  if (!options.out)
-    bad_input("--resume has nothing to continue", "the samples done lie in the folder of --out", "Add --out DIR");
+  expect_folder_of(options, "the samples done");
   const auto table = *options.out / "samples.csv";
   if (!std::filesystem::exists(table)) return {};
   CommonOptions stored;
@@ -432,8 +430,7 @@ std::vector<EnsembleSample> samples_to_keep(const CommonOptions& options, bool r
   if (continued_part(stored, *options.out) != continued_part(options, *options.out) ||
       !read_file(stored.case_file).ends_with(note)) {
     bad_input_at(stored.case_file.string(), "the samples there are of another case",
-                 "it, or a file that it reads, has changed",
-                 "Choose another --out, or leave out --resume and pass --overwrite");
+                 "it, or a file that it reads, has changed", begin_anew);
   }
   return read_samples(table);
 }

@@ -578,8 +578,7 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
 }
 
 void quasistatic(QuasistaticOptions options) {
-  if (options.resume && !options.out)
-    bad_input("--resume has nothing to go on from", "the events lie in the folder of --out", "Add --out DIR");
+  if (options.resume) expect_folder_of(options, "the events");
   const Case resolved = read_case(options);
   if (options.resume) options.overwrite = true;
   const auto path = std::make_shared<ComputedPath>();

@@ -429,9 +429,7 @@ void run_to_accuracy(RunVerb options, double accuracy) {
 }
 
 void check_options(const RunVerb& options, bool collide) {
-  if (options.resume && !options.out)
-    bad_input("--resume without --out", "the checkpoint lies in that folder",
-              "Name the folder of the run that is to go on");
+  if (options.resume) expect_folder_of(options, "the checkpoint");
   if (options.accuracy && collide) {
     bad_input("--accuracy does not act on bodies that collide",
               "their motions do not converge by one order with the step: impacts begin and end within it, and many of "

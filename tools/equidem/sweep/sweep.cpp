@@ -355,14 +355,12 @@ std::string text_of_case(const Sweep& sweep) {
 std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
   const auto& out = sweep.options.out;
   if (!sweep.options.resume) return {};
-  if (!out)
-    bad_input("--resume has nothing to continue", "the points done lie in the folder of --out", "Add --out DIR");
+  expect_folder_of(sweep.options, "the points done");
   const auto table = *out / Sweep::table_name;
   if (!std::filesystem::exists(table)) return {};
   if (!read_file(*out / Sweep::case_name).starts_with(deciding_text(sweep))) {
     bad_input_at((*out / Sweep::case_name).string(), "the sweep there is of another case",
-                 "it, or a file that it reads, has changed",
-                 "Choose another --out, or leave out --resume and pass --overwrite");
+                 "it, or a file that it reads, has changed", begin_anew);
   }
   return read_sweep_points(table, sweep.plan);
 }
