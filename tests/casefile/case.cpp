@@ -147,24 +147,23 @@ TEST_CASE("overrides_replace_add_and_reach_into_lists") {
   CHECK(parsed(tension_case, {"springs={kN = 1, kT = 2}"}).springs->kT == 2);
 }
 
-TEST_CASE("every_case_of_the_data_folder_is_valid_and_can_be_built") {
-  namespace fs = std::filesystem;
-  int cases = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(EQUIDEM_SOURCE_DIR) / "data/cases")) {
-    const std::string name = entry.path().filename().string();
-    if (!name.ends_with(".toml") || name.starts_with("grains_") || name.starts_with("pack_") ||
-        name.starts_with("study_"))
-      continue;
-    CAPTURE(entry.path());
-    const Case c = read_case(entry.path());
+TEST_CASE("every_case_of_the_data_folder_is_valid_and_can_be_built_with_the_scene_of_its_run") {
+  int cases = 0, runs = 0;
+  for (const auto& file : cases_of_the_data_folder("")) {
+    CAPTURE(file);
+    const Case c = read_case(file);
     const Assembly assembly = build_assembly(c);
     const BuiltSprings springs = build_springs(c, assembly);
     INFO(springs.report);
     CHECK(assembly.size() >= 3);
     CHECK(springs.springs.largest() > 0);
     ++cases;
+    if (!c.run) continue;
+    CHECK(build_scene(c, assembly, springs.springs).inertia.size() == assembly.size());
+    ++runs;
   }
   CHECK(cases >= 5);
+  CHECK(runs >= 4);
 }
 
 TEST_CASE("the_description_names_every_key_and_its_example_is_valid") {

@@ -3,6 +3,8 @@
 /// A small valid case, and how tests read it.
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -178,6 +180,18 @@ inline const std::vector<std::string> example_cases = {tension_case, load_case, 
 
 inline Case parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_case(text, "a.toml", ".", overrides);
+}
+
+/// Files data/cases/PREFIX*.toml; of "", those of assemblies.
+inline std::vector<std::filesystem::path> cases_of_the_data_folder(const std::string& prefix) {
+  std::vector<std::filesystem::path> found;
+  for (const auto& entry : std::filesystem::directory_iterator(EQUIDEM_SOURCE_DIR "/data/cases")) {
+    const std::string name = entry.path().filename().string();
+    const bool other = name.starts_with("grains_") || name.starts_with("pack_") || name.starts_with("study_");
+    if (name.ends_with(".toml") && (prefix.empty() ? !other : name.starts_with(prefix))) found.push_back(entry.path());
+  }
+  std::ranges::sort(found);
+  return found;
 }
 
 /// The sentence of the error of a case; empty where it is accepted.

@@ -10,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/packing/measures.hpp"
 
+#include "example.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
@@ -75,16 +76,12 @@ TEST_CASE("shapes_are_read_and_the_box_counts_their_area") {
 }
 
 TEST_CASE("every_packing_of_the_data_folder_is_valid") {
-  namespace fs = std::filesystem;
-  int cases = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(EQUIDEM_SOURCE_DIR) / "data/cases")) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with("pack_") || !name.ends_with(".toml")) continue;
-    CAPTURE(name);
-    CHECK(read_pack_case(entry.path()).packing.radii.size() >= 3);
-    ++cases;
+  const auto files = test::cases_of_the_data_folder("pack_");
+  CHECK(files.size() >= 3);
+  for (const auto& file : files) {
+    CAPTURE(file);
+    CHECK(read_pack_case(file).packing.radii.size() >= 3);
   }
-  CHECK(cases >= 3);
 }
 
 TEST_CASE("springs_come_from_wave_speeds_or_are_given") {

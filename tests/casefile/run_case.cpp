@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Runs of bonded discs: what their tables mean, and the scenes that are built of them.
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -12,12 +16,11 @@
 #include "example.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
+#include "support/temporary_folder.hpp"
 #include "wrong.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
-
-namespace fs = std::filesystem;
 
 TEST_CASE("a_run_says_what_its_file_says") {
   const Case c = parsed(motion_case);
@@ -121,7 +124,8 @@ TEST_CASE("a_run_reads_back_from_its_echo_bit_by_bit") {
 }
 
 TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
-  const fs::path folder = fs::temp_directory_path() / "equidem_test_schedule_file";
+  const TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   const std::string text =
       changed(motion_case, "times = [0.0, 0.2]\nvalues = [0.0, 1.0]\n", "path = \"own/shaking.csv\"\n");
   const auto table_of = [&](const std::string& content) {
@@ -161,126 +165,88 @@ TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
     CHECK(sentence.find(bad.line) != std::string::npos);
     CHECK(sentence.find(bad.word) != std::string::npos);
   }
-  fs::remove_all(folder);
   const std::string missing = error_of(text);
   CAPTURE(missing);
   CHECK(missing.starts_with(place_of(text, "path = \"own") + ": schedule.path: cannot read"));
 }
 
+namespace {
+
+constexpr std::string_view wrong_runs = R"(
+# how long, in which steps
+duration = 0.25 => duration = 0.0 | run.duration | 0.0 is out of range | > 0
+duration = 0.25 => duration = -1 | run.duration | -1 is out of range
+duration = 0.25 => duration = inf | run.duration | not a finite number
+duration = 0.25\n => | @[run] | run | neither duration nor until_rest
+duration = 0.25 => duration = 0.25\nuntil_rest = 1e-10 | run.until_rest | both given
+duration = 0.25 => until_rest = 1.0 | run.until_rest | between 0 and 1
+time_step = 2e-6 => time_step = 0 | run.time_step | 0 is out of range | "auto"
+time_step = 2e-6 => time_step = -2e-6 | run.time_step | out of range
+time_step = 2e-6 => time_step = "automatic" | run.time_step | "automatic" is text
+time_step = 2e-6 => time_step = 1 | run.time_step | longer than the run of 0.25 s
+step_fraction = 0.5 => step_fraction = 1.5 | run.step_fraction | 1.5 is out of range
+step_fraction = 0.5 => step_fraction = 0 | run.step_fraction | 0 is out of range
+# how
+"velocity_verlet" => "verlet" | run.integrator | no known integrator | "leapfrog"
+"velocity_verlet" => "leap_frog" | run.integrator | Did you mean "leapfrog"?
+"bound" => "bounds" | run.step_rule | Did you mean "bound"?
+motion = "finite" => motion = "large" | run.motion | "small", "finite"
+[0.0, -9.81] => -9.81 | run.gravity | two numbers [x, y]
+mass = 3.0 => masses = 3.0 | run.damping.masses | unknown key | 'mass'
+mass = 3.0 => viscous = 3.0 | run.damping.viscous | unknown key | Known here: mass
+mass = 3.0 => mass = -3.0 | run.damping.mass | -3.0 is out of range
+mass = 3.0 => stiffness = 3.0 | @contact = 0.1 | run.damping.contact | stiffness and contact are both
+local = 0.2 => local = 1.0 | run.damping.local | < 1
+[run.damping] => [run.dampling] | run.dampling | unknown table | 'damping'
+# schedules
+end = 0.1 => end = 0.01 | schedule.end | ends at 0.01 s and starts at 0.02 s
+end = 0.1\n => | @[[schedule]] | schedule.end | missing key
+end = 0.1 => end = 0.1\nfrequency = 1.0 | schedule.frequency | does not apply to kind = "ramp"
+frequency = 10.0 => frequency = 0.0 | schedule.frequency | out of range
+kind = "ramp" => kind = "step" | schedule.kind | no known kind | "ramp"
+times = [0.0, 0.2] => times = [0.2, 0.0] | schedule.times | 0 s comes after 0.2 s
+times = [0.0, 0.2] => times = [0.0] | schedule.times | 1 time and 2 values
+times = [0.0, 0.2] => times = [] | schedule.times | empty
+times = [0.0, 0.2] => times = [0.0, inf] | schedule.times | not a finite number
+times = [0.0, 0.2]\n => | @[[schedule]]\nname = "pull" | schedule | neither times nor path | a file
+times = [0.0, 0.2]\n => times = [0.0, 0.2]\npath = "a.csv"\n | schedule.path | times and path are both given
+name = "shake" => name = "open" | schedule.name | two schedules 'open'
+name = "shake" => name = "" | schedule.name | empty
+schedule = "open" => schedule = "opne" | support.schedule | Did you mean "open"?
+schedule = "pull" => schedule = "push" | load.schedule | there is no schedule "push"
+schedule = "shake" => schedule = "x" | wall.schedule | there is no schedule "x"
+# walls, velocities, probes
+normal = [2.0, 0.0] => normal = [0.0, 0.0] | wall.normal | is zero
+kN = 2.0e9 => kN = 0.0 | wall.kN | out of range | > 0
+displacement = 2e-4\n => | wall.schedule | without displacement
+name = "right" => name = "left" | wall.name | two walls 'left'
+displacement = 2e-4\nschedule = "shake"\n => displacement = 2e-4\n | wall.displacement | without schedule | its point
+displacement = 2e-4\nschedule = "shake"\n => direction = [1.0, 0.0]\n | wall.direction | without displacement
+"rotation"] => "rotations"] | probe.quantities | none of the quantities | Did you mean "rotation"?
+"rotation"] => "energy"] | probe.quantities | in every history | Remove it
+group = "right"\nquantities => quantities | @[[probe]] | probe | whose history | Give one
+group = "right"\nquantities => group = "right"\nbodies = [1]\nquantities | @bodies | probe.bodies | both given
+"rotation"] => "velocity"] | probe.quantities | "velocity" is there twice
+["velocity", "rotation"] => [] | probe.quantities | empty
+["velocity", "rotation"] => "spin" | probe.quantities | "spin" is text
+name = "tip" => name = "../tip" | probe.name | cannot name a probe
+frame_interval = 0.05 => frame_interval = 0.0 | output.frame_interval | out of range
+# contradictions
+moment = 2.0 => moment = 2.0\ncase = "a"\n[[load]]\ngroup = "top"\nmoment = 1.0\ncase = "b" | load.case | 'a' and 'b'
+  | one motion
+)";
+
+}  // namespace
+
 TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
-  const std::vector<Wrong> wrongs = {
-      // how long, in which steps
-      {"duration = 0.25", "duration = 0.0", "duration = 0.0", "run.duration", {"0.0 is out of range", "> 0"}},
-      {"duration = 0.25", "duration = -1", "duration = -1", "run.duration", {"-1 is out of range"}},
-      {"duration = 0.25", "duration = inf", "duration = inf", "run.duration", {"not a finite number"}},
-      {"duration = 0.25\n", "", "[run]", "run", {"neither duration nor until_rest"}},
-      {"duration = 0.25", "duration = 0.25\nuntil_rest = 1e-10", "until_rest", "run.until_rest", {"both given"}},
-      {"duration = 0.25", "until_rest = 1.0", "until_rest", "run.until_rest", {"between 0 and 1"}},
-      {"time_step = 2e-6", "time_step = 0", "time_step", "run.time_step", {"0 is out of range", "\"auto\""}},
-      {"time_step = 2e-6", "time_step = -2e-6", "time_step", "run.time_step", {"out of range"}},
-      {"time_step = 2e-6", "time_step = \"automatic\"", "time_step", "run.time_step", {"\"automatic\" is text"}},
-      {"time_step = 2e-6", "time_step = 1", "time_step", "run.time_step", {"longer than the run of 0.25 s"}},
-      {"step_fraction = 0.5", "step_fraction = 1.5", "step_fraction", "run.step_fraction", {"1.5 is out of range"}},
-      {"step_fraction = 0.5", "step_fraction = 0", "step_fraction", "run.step_fraction", {"0 is out of range"}},
-      // how
-      {"\"velocity_verlet\"", "\"verlet\"", "integrator", "run.integrator", {"no known integrator", "\"leapfrog\""}},
-      {"\"velocity_verlet\"", "\"leap_frog\"", "integrator", "run.integrator", {"Did you mean \"leapfrog\"?"}},
-      {"\"bound\"", "\"bounds\"", "step_rule", "run.step_rule", {"Did you mean \"bound\"?"}},
-      {"motion = \"finite\"", "motion = \"large\"", "motion", "run.motion", {"\"small\", \"finite\""}},
-      {"[0.0, -9.81]", "-9.81", "gravity", "run.gravity", {"two numbers [x, y]"}},
-      {"mass = 3.0", "masses = 3.0", "masses", "run.damping.masses", {"unknown key", "'mass'"}},
-      {"mass = 3.0", "viscous = 3.0", "viscous", "run.damping.viscous", {"unknown key", "Known here: mass"}},
-      {"mass = 3.0", "mass = -3.0", "mass = -3.0", "run.damping.mass", {"-3.0 is out of range"}},
-      {"mass = 3.0", "stiffness = 3.0", "contact = 0.1", "run.damping.contact", {"stiffness and contact are both"}},
-      {"local = 0.2", "local = 1.0", "local", "run.damping.local", {"< 1"}},
-      {"[run.damping]", "[run.dampling]", "[run.dampling]", "run.dampling", {"unknown table", "'damping'"}},
-      // schedules
-      {"end = 0.1", "end = 0.01", "end = 0.01", "schedule.end", {"ends at 0.01 s and starts at 0.02 s"}},
-      {"end = 0.1\n", "", "[[schedule]]", "schedule.end", {"missing key"}},
-      {"end = 0.1",
-       "end = 0.1\nfrequency = 1.0",
-       "frequency",
-       "schedule.frequency",
-       {"does not apply to kind = \"ramp\""}},
-      {"frequency = 10.0", "frequency = 0.0", "frequency", "schedule.frequency", {"out of range"}},
-      {"kind = \"ramp\"", "kind = \"step\"", "kind = \"step\"", "schedule.kind", {"no known kind", "\"ramp\""}},
-      {"times = [0.0, 0.2]", "times = [0.2, 0.0]", "times", "schedule.times", {"0 s comes after 0.2 s"}},
-      {"times = [0.0, 0.2]", "times = [0.0]", "times", "schedule.times", {"1 time and 2 values"}},
-      {"times = [0.0, 0.2]", "times = []", "times", "schedule.times", {"empty"}},
-      {"times = [0.0, 0.2]", "times = [0.0, inf]", "times", "schedule.times", {"not a finite number"}},
-      {"times = [0.0, 0.2]\n", "", "[[schedule]]\nname = \"pull\"", "schedule", {"neither times nor path", "a file"}},
-      {"times = [0.0, 0.2]\n",
-       "times = [0.0, 0.2]\npath = \"a.csv\"\n",
-       "path = \"a.csv\"",
-       "schedule.path",
-       {"times and path are both given"}},
-      {"name = \"shake\"",
-       "name = \"open\"",
-       "name = \"open\"\nkind = \"sine\"",
-       "schedule.name",
-       {"two schedules 'open'"}},
-      {"name = \"shake\"", "name = \"\"", "name = \"\"", "schedule.name", {"empty"}},
-      {"schedule = \"open\"",
-       "schedule = \"opne\"",
-       "schedule = \"opne\"",
-       "support.schedule",
-       {"Did you mean \"open\"?"}},
-      {"schedule = \"pull\"",
-       "schedule = \"push\"",
-       "schedule = \"push\"",
-       "load.schedule",
-       {"there is no schedule \"push\""}},
-      {"schedule = \"shake\"", "schedule = \"x\"", "schedule = \"x\"", "wall.schedule", {"there is no schedule \"x\""}},
-      // walls, velocities, probes
-      {"normal = [2.0, 0.0]", "normal = [0.0, 0.0]", "normal", "wall.normal", {"is zero"}},
-      {"kN = 2.0e9", "kN = 0.0", "kN = 0.0", "wall.kN", {"out of range", "> 0"}},
-      {"displacement = 2e-4\n", "", "schedule = \"shake\"", "wall.schedule", {"without displacement"}},
-      {"name = \"right\"", "name = \"left\"", "name = \"left\"\npoint = [0.1", "wall.name", {"two walls 'left'"}},
-      {"displacement = 2e-4\nschedule = \"shake\"\n",
-       "displacement = 2e-4\n",
-       "displacement = 2e-4",
-       "wall.displacement",
-       {"without schedule", "its point"}},
-      {"displacement = 2e-4\nschedule = \"shake\"\n",
-       "direction = [1.0, 0.0]\n",
-       "direction",
-       "wall.direction",
-       {"without displacement"}},
-      {"\"rotation\"]",
-       "\"rotations\"]",
-       "quantities",
-       "probe.quantities",
-       {"none of the quantities", "Did you mean \"rotation\"?"}},
-      {"\"rotation\"]", "\"energy\"]", "quantities", "probe.quantities", {"in every history", "Remove it"}},
-      {"group = \"right\"\nquantities", "quantities", "[[probe]]", "probe", {"whose history", "Give one"}},
-      {"group = \"right\"\nquantities",
-       "group = \"right\"\nbodies = [1]\nquantities",
-       "bodies",
-       "probe.bodies",
-       {"both given"}},
-      {"\"rotation\"]", "\"velocity\"]", "quantities", "probe.quantities", {"\"velocity\" is there twice"}},
-      {"[\"velocity\", \"rotation\"]", "[]", "quantities", "probe.quantities", {"empty"}},
-      {"[\"velocity\", \"rotation\"]", "\"spin\"", "quantities", "probe.quantities", {"\"spin\" is text"}},
-      {"name = \"tip\"", "name = \"../tip\"", "name = \"../tip\"", "probe.name", {"cannot name a probe"}},
-      {"frame_interval = 0.05", "frame_interval = 0.0", "frame_interval", "output.frame_interval", {"out of range"}},
-      // contradictions
-      {"moment = 2.0",
-       "moment = 2.0\ncase = \"a\"\n[[load]]\ngroup = \"top\"\nmoment = 1.0\ncase = \"b\"",
-       "case = \"b\"",
-       "load.case",
-       {"'a' and 'b'", "one motion"}},
-  };
   REQUIRE(error_of(motion_case).empty());
-  for (const Wrong& wrong : wrongs) {
-    const std::string text = changed(motion_case, wrong.what, wrong.by);
-    check_sentence(text, error_of(text), wrong);
-  }
+  check_wrong(motion_case, wrong_runs, error_of);
 }
 
 TEST_CASE("what_acts_in_a_run_alone_is_not_passed_over_without_one") {
   const auto begin = motion_case.find("[run]"), end = motion_case.find("[[schedule]]");
   const std::string without = std::string(motion_case).erase(begin, end - begin);
-  check_sentence(without, error_of(without), {"", "", "[[wall]]", "wall", {"[run] is not", "Add [run]"}});
+  check_sentence(error_of(without), {place_of(without, "[[wall]]"), "wall", {"[run] is not", "Add [run]"}});
   const std::string bare = without.substr(0, without.find("[[wall]]"));
   CHECK(error_of(bare).empty());
   CHECK(parsed(bare).schedules.size() == 3);
@@ -292,5 +258,127 @@ TEST_CASE("the_description_fits_a_hundred_columns") {
     CAPTURE(line);
     // Bytes that continue a character take no column.
     CHECK(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }) <= 100);
+  }
+}
+
+namespace {
+
+/// The sentence with which the scene of a valid case is refused; empty where it stands.
+std::string scene_error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const Case c = parsed(text, overrides);
+  const Assembly assembly = build_assembly(c);
+  const BuiltSprings springs = build_springs(c, assembly);
+  const Refusal refused = refusal_of([&] { static_cast<void>(build_scene(c, assembly, springs.springs)); });
+  return refused.kind == ErrorKind::bad_input ? refused.message : "wrong kind";
+}
+
+}  // namespace
+
+TEST_CASE("a_scene_is_what_its_case_says") {
+  const Case c = parsed(motion_case);
+  const Assembly assembly = build_assembly(c);
+  const BuiltSprings springs = build_springs(c, assembly);
+  const Scene scene = build_scene(c, assembly, springs.springs);
+  REQUIRE(scene.inertia.size() == assembly.size());
+  const double a = assembly.radii[0], m = 2650 * std::numbers::pi * a * a;
+  CHECK(scene.inertia[0].mass == Approx(m).epsilon(1e-14));
+  CHECK(scene.inertia[0].moment == Approx(m * a * a / 2).epsilon(1e-14));
+  CHECK(scene.supports.size() == 2);
+  CHECK(scene.loads.size() == 2);
+  CHECK(scene.walls.size() == 2);
+  CHECK(scene.velocities.size() == 1);
+  const SimulationOptions options = simulation_options(c, 1e-6);
+  CHECK(options.time_step == 1e-6);
+  CHECK(options.motion == LoopKind::Motion::finite);
+  CHECK(options.integrator == Integrator::velocity_verlet);
+  CHECK(scene.gravity.y == -9.81);
+  CHECK(options.damping.local == 0.2);
+}
+
+TEST_CASE("a_tension_test_acts_from_the_start_of_a_run") {
+  const Case c = parsed(tension_case, {"run.duration=1", "assembly.density=1"});
+  const Assembly assembly = build_assembly(c);
+  const BuiltSprings springs = build_springs(c, assembly);
+  const Scene scene = build_scene(c, assembly, springs.springs);
+  const TensionSetup test = tension_setup(assembly, *c.test);
+  REQUIRE(scene.supports.size() == test.supports.size());
+  REQUIRE(scene.loads.size() == test.loads.size());
+  for (std::size_t k = 0; k < test.loads.size(); ++k) {
+    CHECK(scene.loads[k].load.force == test.loads[k].force);
+    CHECK(scene.loads[k].factor.at(0) == 1);
+  }
+}
+
+TEST_CASE("scenes_that_cannot_be_built_say_where") {
+  REQUIRE(scene_error_of(motion_case).empty());
+  check_wrong(motion_case, R"(
+density = 2650.0\n => | @[assembly] | assembly | density is missing | [material]
+"bottom_right" => "bottom_left" | @uy = 1e-5 | support.1.uy | uy of disc | a second time | 'left'
+group = "right"\nvelocity = [0.1, 0.0] => group = "right"\n[[velocity]]\ngroup = "top" | velocity.1.group
+  | two velocities | 'right' and in 'top'
+normal = [2.0, 0.0] => normal = [-2.0, 0.0] | @[[wall]] | wall.0 | behind wall 'left'
+point = [0.1, 0.0] => point = [-0.03, 0.0] | @[[wall]] | wall.0 | 'left' and 'right' cross
+)",
+              scene_error_of);
+  const std::string no_run = scene_error_of(tension_case);
+  CAPTURE(no_run);
+  CHECK(no_run.starts_with("a.toml:1: run: missing table"));
+}
+
+TEST_CASE("the_same_motion_twice_is_one_motion") {
+  // The corner disc belongs to both sides.
+  CHECK(scene_error_of(changed(motion_case, "\"bottom_right\"\nuy = 1e-5", "\"bottom_left\"\nuy = true")).empty());
+}
+
+TEST_CASE("velocities_and_probes_need_a_group_that_exists") {
+  for (const std::string table : {"velocity", "probe"}) {
+    const Case c = parsed(motion_case, {table + ".0.group=nowhere"});
+    check_refused([&] { static_cast<void>(build_assembly(c)); },
+                  {table + ".0.group: the assembly has no group 'nowhere'"});
+  }
+}
+
+TEST_CASE("a_probe_records_a_group_or_discs_by_their_numbers") {
+  const Case by_group = parsed(motion_case);
+  const Assembly assembly = build_assembly(by_group);
+  CHECK(build_probes(by_group, assembly)[0].bodies == group(assembly, "right").discs);
+  const Case by_number = parsed(motion_case, {"probe.0.group=none", "probe.0.bodies=[2, 0]"});
+  CHECK(build_probes(by_number, assembly)[0].bodies == std::vector<std::int32_t>{2, 0});
+  const Case beyond = parsed(motion_case, {"probe.0.group=none", "probe.0.bodies=[2, 99]"});
+  check_refused([&] { static_cast<void>(build_probes(beyond, assembly)); }, {"probe.bodies: there is no body 99"});
+}
+
+TEST_CASE("a_velocity_that_would_be_dropped_is_refused") {
+  constexpr const char* text = R"(schema = "equidem/1"
+[assembly]
+kind = "hexagonal"
+columns = 4
+rows = 4
+radius = 0.5
+density = 1.0
+[springs]
+kN = 1.0
+kT = 0.5
+[run]
+duration = 1.0
+[[support]]
+group = "bottom"
+uy = 0.0
+[[velocity]]
+group = "bottom"
+velocity = [1.0, 0.0]
+spin = 2.0
+)";
+  CHECK(scene_error_of(text).empty());
+  const std::string held = scene_error_of(text, {"velocity.0.velocity=[1,-1]"});
+  CAPTURE(held);
+  CHECK(held.find("its uy is prescribed") != std::string::npos);
+  CHECK(held.find("velocity.0") != std::string::npos);
+  CHECK(scene_error_of(text, {"velocity.0.velocity=[1,-1]", "velocity.0.group=top"}).empty());
+  CHECK(scene_error_of(text, {"support.0.rotation=0"}).find("its rotation is prescribed") != std::string::npos);
+  for (const char* option : {"springs.kT=0", "effects.rotation=restrained"}) {
+    CAPTURE(option);
+    CHECK(scene_error_of(text, {option}).find("rotations are no unknowns") != std::string::npos);
+    CHECK(scene_error_of(text, {option, "velocity.0.spin=0"}).empty());
   }
 }

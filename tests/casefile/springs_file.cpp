@@ -37,6 +37,9 @@ struct SpringsFolder {
 
 const std::string named = "schema = \"equidem/1\"\nsprings = \"springs.toml\"\n";
 
+const std::string tension_by_file = changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
+                                            "springs = \"springs.toml\"\ntitle ");
+
 const std::string packed_box =
     "[packing]\ngrains = 30\nsolid_fraction = 0.7\ngap_tolerance = 0.05\nsides = \"periodic\"\n"
     "[packing.radii]\nsmallest = 0.005\nlargest = 0.01\n";
@@ -50,15 +53,13 @@ const std::string meeting_discs =
 
 TEST_CASE("a_springs_file_stands_in_for_the_springs") {
   const TemporaryFolder folder;
-  const std::string text = changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "");
-  const std::string with_file = changed(text, "title ", "springs = \"springs.toml\"\ntitle ");
   const auto sentence = [&]() -> std::string {
-    return test::refusal_of([&] { static_cast<void>(parse_case(with_file, "a.toml", folder.path())); }).message;
+    return test::refusal_of([&] { static_cast<void>(parse_case(tension_by_file, "a.toml", folder.path())); }).message;
   };
 
   write_file(folder / "springs.toml",
              "schema = \"equidem-springs/1\"\n[springs]\nkN = 2.0e9\nkT = 1.0e9\nweighting = \"voronoi\"\n", true);
-  const Case c = parse_case(with_file, "a.toml", folder.path());
+  const Case c = parse_case(tension_by_file, "a.toml", folder.path());
   REQUIRE(c.springs);
   CHECK(c.springs->kN == 2e9);
   CHECK(c.weighting == SpringWeighting::voronoi);
@@ -84,9 +85,7 @@ TEST_CASE("a_springs_file_reads_back_bit_by_bit") {
       springs_file(springs, weighting, {}, {}, "a \"title\" \\ äöü", "calibrated\n\nline\ttwo\x01");
   CAPTURE(text);
   write_file(folder / "springs.toml", text, true);
-  const Case c = parse_case(changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
-                                    "springs = \"springs.toml\"\ntitle "),
-                            "a.toml", folder.path());
+  const Case c = parse_case(tension_by_file, "a.toml", folder.path());
   REQUIRE(c.springs);
   CHECK(c.springs->kN == springs.kN);
   CHECK(c.springs->kT == springs.kT);
@@ -96,10 +95,8 @@ TEST_CASE("a_springs_file_reads_back_bit_by_bit") {
 TEST_CASE("a_springs_file_carries_the_density_of_its_discs") {
   const TemporaryFolder folder;
   write_file(folder / "springs.toml", springs_file({1e9, 5e8}, SpringWeighting::uniform, 2738.0, 0.75, "", ""), true);
-  const std::string text = changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
-                                   "springs = \"springs.toml\"\ntitle ");
   const auto density = [&](const std::vector<std::string>& overrides) {
-    return parse_case(text, "a.toml", folder.path(), overrides).assembly.density;
+    return parse_case(tension_by_file, "a.toml", folder.path(), overrides).assembly.density;
   };
   CHECK(density({}) == 2738.0);
   CHECK(density({"assembly.density=2738.0"}) == 2738.0);
@@ -140,50 +137,28 @@ TEST_CASE("springs_that_differ_from_contact_to_contact_are_left_out_of_what_pack
 }
 
 TEST_CASE("springs_that_bodies_that_collide_cannot_have_are_refused_with_their_line") {
-  struct Wrong {
-    const char *springs, *what, *by;
-    std::vector<std::string> words;
-  };
-  const std::vector<Wrong> all = {
-      {"kN = 2.0e9\nkT = 0.5e9\nweighting = \"voronoi\"\n",
-       "",
-       "",
-       {"springs.toml:5: springs.weighting", "come and go", "weighting = \"uniform\""}},
-      {"kN = 2.0e9\nkT = -0.5e9\n", "", "", {"springs.toml:4: springs.kT", "negative"}},
-      {"kN = 2.0e9\nkT = 0.5e9\n",
-       "restitution = 0.5\n",
-       "restitution = 0.5\nstiffness = 1e5\n",
-       {"collisions.stiffness", "[springs] and stiffness are both given"}},
-      {"kN = 2.0e9\nkT = 0.5e9\n",
-       "restitution = 0.5\n",
-       "restitution = 0.5\ntangential_ratio = 0.3\n",
-       {"[springs] and tangential_ratio are both given"}},
-      {"kN = 2.0e9\nkT = 0.5e9\ndensity = 2000.0\n",
-       "[[grain]]",
-       "[grains]\nbody = \"sphere\"\n[[grain]]",
-       {"the grains are spheres", "per metre of depth"}},
-      {"kN = 2.0e9\nkT = 0.5e9\ndensity = 2000.0\n",
-       "linear_dashpot",
-       "hertz_dashpot",
-       {"hertz_dashpot has no linear spring", "exact_flow"}},
-      {"kN = 2.0e9\nkT = 0.5e9\ndensity = 2000.0\n",
-       "[[grain]]",
-       "[grains]\ndensity = 2100.0\n[[grain]]",
-       {"springs.toml:5: springs.density", "2000 kg/m³ here and 2100 kg/m³ in [grains]"}},
-  };
-  for (const Wrong& wrong : all) {
-    const SpringsFolder files(wrong.springs);
-    std::string text = *wrong.what != 0 ? changed(meeting_discs, wrong.what, wrong.by) : meeting_discs;
-    if (std::string(wrong.springs).find("density") == std::string::npos)
+  const std::string plain = "kN = 2.0e9\nkT = 0.5e9\n", dense = plain + "density = 2000.0\n";
+  const auto refused = [](const std::string& springs, const std::string& what, const std::string& by,
+                          const std::vector<std::string>& words) {
+    const SpringsFolder files(springs);
+    std::string text = changed(meeting_discs, what, by);
+    if (springs.find("density") == std::string::npos)
       text = changed(text, "[[grain]]", "[grains]\ndensity = 2500.0\n[[grain]]");
-    const std::string sentence =
-        files.refusal([&] { return parse_grain_case(named + text, "a.toml", files.folder.path()); });
-    CAPTURE(wrong.springs, wrong.by, sentence);
-    for (const std::string& word : wrong.words) {
-      CAPTURE(word);
-      CHECK(sentence.find(word) != std::string::npos);
-    }
-  }
+    CAPTURE(springs, by);
+    check_refused([&] { parse_grain_case(named + text, "a.toml", files.folder.path()); }, words);
+  };
+  refused(plain + "weighting = \"voronoi\"\n", "", "",
+          {"springs.toml:5: springs.weighting", "come and go", "weighting = \"uniform\""});
+  refused("kN = 2.0e9\nkT = -0.5e9\n", "", "", {"springs.toml:4: springs.kT", "negative"});
+  refused(plain, "restitution = 0.5\n", "restitution = 0.5\nstiffness = 1e5\n",
+          {"collisions.stiffness", "[springs] and stiffness are both given"});
+  refused(plain, "restitution = 0.5\n", "restitution = 0.5\ntangential_ratio = 0.3\n",
+          {"[springs] and tangential_ratio are both given"});
+  refused(dense, "[[grain]]", "[grains]\nbody = \"sphere\"\n[[grain]]",
+          {"the grains are spheres", "per metre of depth"});
+  refused(dense, "linear_dashpot", "hertz_dashpot", {"hertz_dashpot has no linear spring", "exact_flow"});
+  refused(dense, "[[grain]]", "[grains]\ndensity = 2100.0\n[[grain]]",
+          {"springs.toml:5: springs.density", "2000 kg/m³ here and 2100 kg/m³ in [grains]"});
 }
 
 TEST_CASE("grains_of_other_densities_may_stand_among_those_of_the_springs_but_not_instead_of_them") {

@@ -79,18 +79,4 @@ inline GrainScene chain_scene(NormalLaw law, std::size_t discs, const GrainBond&
   return scene;
 }
 
-struct Momenta {
-  Vec2 linear;
-  double angular = 0;  ///< about the origin
-};
-
-inline Momenta momenta_of(const std::vector<Grain>& grains) {
-  Momenta sum;
-  for (const Grain& grain : grains) {
-    sum.linear += grain.inertia.mass * grain.velocity;
-    sum.angular += grain.inertia.mass * cross(grain.position, grain.velocity) + grain.inertia.moment * grain.spin;
-  }
-  return sum;
-}
-
 }  // namespace equidem::test

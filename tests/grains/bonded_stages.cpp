@@ -17,21 +17,10 @@ using namespace equidem::test;
 
 namespace {
 
-/// Columns of discs between a floor, two walls and a lid that presses them with 20 N.
+/// Under a lid that presses with 20 N.
 /// \param aside weight of a disc to the right: contacts then carry tangential forces
-GrainScene pressed_columns(NormalLaw law, double aside = 0) {
-  std::vector<Grain> grains;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) grains.push_back(ball({i + 0.5, j + 0.5}, 0.5));
-  PairProperties pair = one_second(law, 0.2, 0.5);
-  pair.stiffness *= 1000;
-  pair.friction = 0.3;
-  pair.tangential_ratio = 0.5;
-  GrainScene scene = scene_of(grains,
-                              {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
-                               line("right", {4, 0}, {-1, 0}), line("lid", {0, 4.01}, {0, -1})},
-                              pair);
-  scene.walls[3].servo = Servo{.direction = {0, -1}, .wanted = {.value = 20}, .max_speed = 0.1};
+GrainScene columns_to_bond(NormalLaw law, double aside = 0) {
+  GrainScene scene = pressed_columns(law, 20, 0.3, 0.2, 4.01);
   scene.gravity = {aside, 0};
   return scene;
 }
@@ -67,10 +56,9 @@ struct LoadsOnDiscs {
 
 TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_and_moments") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
-  const GrainScene scene = pressed_columns(stepping.law, 0.8);
+  const GrainScene scene = columns_to_bond(stepping.law, 0.8);
   GrainStage press{.name = "press", .scene = scene, .steps = 150000};
-  GrainStage bond = press;
-  bond.name = "bond";
+  GrainStage bond = named(press, "bond");
   bond.steps = 400;
   bond.bonds = stiff_bonds();
   StagedSimulation staged({press, bond}, options_of(stepping, 2e-4));
@@ -104,8 +92,7 @@ TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_a
 TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   CAPTURE(stepping.name());
-  GrainScene scene = busy_box(stepping.law, 4, 3, 5);
-  for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+  GrainScene scene = still(busy_box(stepping.law, 4, 3, 5));
   scene.bonds = {{.i = 0, .j = 1, .normal_spring = 300, .tangential_spring = 100, .bending_spring = 5}};
   scene.strengths = ContactStrengths{{14}, {9}, 0.2};
   GrainStage first{.name = "thrown", .scene = scene, .steps = 60};
@@ -172,9 +159,8 @@ TEST_CASE("a_disc_that_only_spins_between_plates_with_friction_is_not_at_rest") 
 
 TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shapes_are_refused") {
   const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-4);
-  GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 20000};
-  GrainStage bond = press;
-  bond.name = "bond";
+  GrainStage press{.name = "press", .scene = columns_to_bond(NormalLaw::linear_dashpot), .steps = 20000};
+  GrainStage bond = named(press, "bond");
   bond.bonds = stiff_bonds();
   bond.bonds->like.normal_spring = 1;
   StagedSimulation soft({press, bond}, options);
@@ -206,9 +192,8 @@ TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shap
 }
 
 TEST_CASE("a_saved_stage_with_bonds_or_bodies_that_the_run_lacks_is_refused") {
-  GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 10};
-  GrainStage bond = press;
-  bond.name = "bond";
+  GrainStage press{.name = "press", .scene = columns_to_bond(NormalLaw::linear_dashpot), .steps = 10};
+  GrainStage bond = named(press, "bond");
   bond.bonds = stiff_bonds();
   StagedSimulation staged({press, bond}, options_of(NormalLaw::linear_dashpot, 2e-4));
   run_to(staged, 15);
@@ -239,9 +224,8 @@ TEST_CASE("a_saved_stage_with_bonds_or_bodies_that_the_run_lacks_is_refused") {
 
 TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
   const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-3);
-  GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 10};
-  GrainStage bond = press;
-  bond.name = "bond";
+  GrainStage press{.name = "press", .scene = columns_to_bond(NormalLaw::linear_dashpot), .steps = 10};
+  GrainStage bond = named(press, "bond");
   bond.bonds = stiff_bonds();
   bond.bonds->like.normal_spring = 1e7;
   StagedSimulation staged({press, bond}, options);
@@ -265,8 +249,7 @@ TEST_CASE("a_bonded_pair_that_creeps_together_goes_on_into_the_next_stage") {
   const double before = distance();
   CAPTURE(stepping.name(), before);
   REQUIRE(before < 1);
-  GrainStage sink{.name = "sink", .scene = scene, .steps = simulation.step()}, float_on = sink;
-  float_on.name = "float";
+  GrainStage sink{.name = "sink", .scene = scene, .steps = simulation.step()}, float_on = named(sink, "float");
   float_on.scene.gravity = {};
   float_on.steps = 100;
   StagedSimulation staged({sink, float_on}, options_of(stepping, 1e-3));

@@ -291,19 +291,6 @@ TEST_CASE("a_pair_pressed_by_a_steady_force_creeps_at_force_over_dashpot") {
   }
 }
 
-TEST_CASE("bonds_keep_momentum_and_angular_momentum") {
-  const Stepping stepping = GENERATE(from_range(bonding_steppings));
-  const GrainScene scene = chain_scene(stepping.law, 7, all_of_a_bond);
-  GrainSimulation simulation(scene, options_of(stepping, 0.9 * explicit_step_limit(scene)));
-  const Momenta before = momenta_of(simulation.grains());
-  simulation.advance(500);
-  const Momenta after = momenta_of(simulation.grains());
-  CAPTURE(stepping.name(), before.linear.x, before.linear.y, before.angular, after.angular - before.angular);
-  CHECK(norm(after.linear - before.linear) < 1e-13);
-  // the kicks act at places half a step from where they are counted; without them round-off
-  CHECK(std::abs(after.angular - before.angular) < 1e-12);
-}
-
 TEST_CASE("bonded_discs_do_not_collide_with_each_other_but_with_all_others") {
   const Stepping stepping = GENERATE(from_range(bonding_steppings));
   GrainScene scene = pair_scene(stepping.law, {.j = 1, .normal_dashpot = 1, .tangential_dashpot = 1});

@@ -34,12 +34,6 @@ inline GrainOptions verlet_options(double step = 0.005) {
   return options_of(Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, step);
 }
 
-inline Vec2 momentum_in_cell(const GrainSimulation& simulation) {
-  Vec2 sum;
-  for (const Grain& grain : simulation.grains()) sum += grain.inertia.mass * grain.velocity;
-  return sum;
-}
-
 /// The least distance of two places over all images.
 inline double distance_in_cell(Vec2 a, Vec2 b, const CellState& cell) {
   Vec2 apart = b - a;

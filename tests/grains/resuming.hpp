@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/grains/stages/staged_simulation.hpp"
@@ -13,7 +15,8 @@
 
 namespace equidem::test {
 
-/// Saved at about forty steps, and at those at which bodies are taken back into a cell (every 256th).
+/// Saved at about forty steps, and at those at which bodies are taken back into a cell (every 256th); steps that were
+/// made one at a time are then made together, by a new simulation and by the one that has made them.
 inline void check_resuming(const GrainScene& scene, const GrainOptions& options, std::int64_t last) {
   GrainSimulation whole(scene, options);
   std::vector<SavedState> states;
@@ -40,6 +43,18 @@ inline void check_resuming(const GrainScene& scene, const GrainOptions& options,
       CHECK(resumed.breaks()[b].energy == whole.breaks()[b].energy);
     }
   }
+  for (const std::size_t s : {std::size_t{0}, states.size() / 2}) {
+    whole.restore(states[s]);
+    CHECK(bits_and_loads_of(whole) == seen[s]);
+    whole.advance(last - states[s].step);
+    CHECK(bits_and_loads_of(whole) == seen.back());
+  }
+}
+
+/// A stage that differs from another one by its name.
+inline GrainStage named(GrainStage stage, std::string name) {
+  stage.name = std::move(name);
+  return stage;
 }
 
 /// Over ends of stages.

@@ -119,6 +119,33 @@ inline GrainOptions options_of(NormalLaw law, double step) {
   return options_of(Stepping{law, GrainIntegrator::semi_implicit_euler}, step);
 }
 
+/// The largest difference of places, velocities, spins and angles of the same bodies.
+inline double distance_of(const std::vector<Grain>& a, const std::vector<Grain>& b) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    largest = std::max({largest, norm(a[k].position - b[k].position), norm(a[k].velocity - b[k].velocity),
+                        std::abs(a[k].spin - b[k].spin), std::abs(a[k].angle - b[k].angle)});
+  return largest;
+}
+
+struct Momenta {
+  Vec2 linear;
+  double angular = 0;  ///< about the origin
+};
+inline Momenta momenta_of(const std::vector<Grain>& grains) {
+  Momenta sum;
+  for (const Grain& grain : grains) {
+    sum.linear += grain.inertia.mass * grain.velocity;
+    sum.angular += grain.inertia.mass * cross(grain.position, grain.velocity) + grain.inertia.moment * grain.spin;
+  }
+  return sum;
+}
+
+/// The overlap of a contact at rest under a force.
+inline double overlap_under(double force, NormalLaw law, double stiffness) {
+  return std::pow(force / stiffness, law == NormalLaw::hertz_dashpot ? 2.0 / 3 : 1.0);
+}
+
 /// Step until something touched and nothing touches any more.
 /// \return whether that happened
 inline bool pass_contact(GrainSimulation& simulation, std::int64_t most_steps) {
@@ -206,6 +233,34 @@ inline GrainScene busy_box(NormalLaw law, int columns, int rows, std::uint64_t s
   pair.tangential_ratio = 0.5;
   pair.tangential_damping = 0.1;
   return scene_of(std::move(grains), std::move(walls), pair, {0, -1});
+}
+
+inline Wall pushing(Wall wall, double force, double max_speed = 0.1) {
+  wall.servo = Servo{.direction = wall.normal, .wanted = {.value = force}, .max_speed = max_speed};
+  return wall;
+}
+
+/// Columns of discs that touch one another between a floor, two walls and a lid that presses them, stiffer than their
+/// load by 100, damped.
+inline GrainScene pressed_columns(NormalLaw law, double force, double friction = 0, double restitution = 0.3,
+                                  double lid = 4.05) {
+  std::vector<Grain> grains;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) grains.push_back(ball({i + 0.5, j + 0.5}, 0.5));
+  PairProperties pair = one_second(law, restitution, 0.5);
+  pair.stiffness *= 1000;
+  pair.friction = friction;
+  pair.tangential_ratio = 0.5;
+  return scene_of(grains,
+                  {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {4, 0}, {-1, 0}),
+                   pushing(line("lid", {0, lid}, {0, -1}), force)},
+                  pair);
+}
+
+/// Its walls stand.
+inline GrainScene still(GrainScene scene) {
+  for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+  return scene;
 }
 
 /// With rolling resistance and cohesion. \param attraction N

@@ -10,34 +10,10 @@
 using namespace equidem;
 using namespace equidem::test;
 
-namespace {
-
-Wall pushing(Wall wall, double force, double max_speed = 0.1) {
-  wall.servo = Servo{.direction = wall.normal, .wanted = {.value = force}, .max_speed = max_speed};
-  return wall;
-}
-
-/// Columns of discs that touch one another, stiffer than their load by 100, damped.
-GrainScene pressed_box(NormalLaw law, double force, double friction = 0) {
-  std::vector<Grain> grains;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) grains.push_back(ball({i + 0.5, j + 0.5}, 0.5));
-  PairProperties pair = one_second(law, 0.3, 0.5);
-  pair.stiffness *= 1000;
-  pair.friction = friction;
-  pair.tangential_ratio = 0.5;
-  return scene_of(grains,
-                  {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {4, 0}, {-1, 0}),
-                   pushing(line("lid", {0, 4.05}, {0, -1}), force)},
-                  pair);
-}
-
-}  // namespace
-
 TEST_CASE("a_servo_wall_holds_its_force_and_the_floor_bears_it") {
   const Stepping stepping = GENERATE(from_range(servo_steppings));
   CAPTURE(stepping.name());
-  const GrainScene scene = pressed_box(stepping.law, 20, 0.3);
+  const GrainScene scene = pressed_columns(stepping.law, 20, 0.3);
   GrainSimulation simulation(scene, options_of(stepping, 2e-4));
   simulation.advance(200000);
   const auto walls = simulation.walls();
@@ -59,7 +35,7 @@ TEST_CASE("a_servo_wall_holds_its_force_and_the_floor_bears_it") {
 TEST_CASE("walls_tied_as_mirrors_move_alike_and_the_mean_of_their_forces_is_held") {
   const Stepping stepping = GENERATE(from_range(servo_steppings));
   CAPTURE(stepping.name());
-  GrainScene scene = pressed_box(stepping.law, 20);
+  GrainScene scene = pressed_columns(stepping.law, 20);
   scene.walls[0].servo = Servo{.direction = {0, 1}, .wanted = {.value = 10}, .max_speed = 0.1, .mirror = "lid"};
   scene.walls[3].servo.reset();
   GrainSimulation simulation(scene, options_of(stepping, 2e-4));
@@ -72,7 +48,7 @@ TEST_CASE("walls_tied_as_mirrors_move_alike_and_the_mean_of_their_forces_is_held
 }
 
 TEST_CASE("a_stress_acts_on_the_present_length_between_neighbours") {
-  GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
+  GrainScene scene = pressed_columns(NormalLaw::linear_dashpot, 20);
   Servo& servo = *scene.walls[3].servo;
   servo.is_stress = true;
   servo.between = {"left", "right"};
@@ -85,7 +61,7 @@ TEST_CASE("a_stress_acts_on_the_present_length_between_neighbours") {
 }
 
 TEST_CASE("a_force_that_grows_by_a_schedule_is_followed") {
-  GrainScene scene = pressed_box(NormalLaw::exact_flow, 20);
+  GrainScene scene = pressed_columns(NormalLaw::exact_flow, 20);
   scene.walls[3].servo->wanted = {Schedule::Kind::table, 0, 0, 0, 0, {0, 10, 30}, {5, 5, 30}};
   GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 1e-3));
   simulation.advance(20000);
@@ -96,7 +72,7 @@ TEST_CASE("a_force_that_grows_by_a_schedule_is_followed") {
 }
 
 TEST_CASE("a_servo_wall_keeps_below_its_speed") {
-  const GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
+  const GrainScene scene = pressed_columns(NormalLaw::linear_dashpot, 20);
   GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 2e-4));
   double fastest = 0, place = 4.05;
   for (int k = 0; k < 10000; ++k) {
@@ -174,7 +150,7 @@ TEST_CASE("a_servo_wall_follows_bodies_that_give_way_without_a_lasting_error") {
 }
 
 TEST_CASE("a_servo_wall_that_meets_no_body_is_an_error_and_no_endless_way") {
-  GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
+  GrainScene scene = pressed_columns(NormalLaw::linear_dashpot, 20);
   scene.walls[3].normal = {0, -1};
   scene.walls[3].servo->direction = {0, 1};
   GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 2e-3));
@@ -183,7 +159,7 @@ TEST_CASE("a_servo_wall_that_meets_no_body_is_an_error_and_no_endless_way") {
 }
 
 TEST_CASE("servos_that_contradict_each_other_are_refused") {
-  const GrainScene sound = pressed_box(NormalLaw::linear_dashpot, 20);
+  const GrainScene sound = pressed_columns(NormalLaw::linear_dashpot, 20);
   const auto refused = [&](const auto& change, std::vector<std::string> words,
                            NormalLaw law = NormalLaw::linear_dashpot) {
     GrainScene scene = sound;
@@ -211,7 +187,7 @@ TEST_CASE("servos_that_contradict_each_other_are_refused") {
 
 TEST_CASE("a_servo_wall_on_bodies_at_rest_begins_with_the_force_that_they_carry") {
   const Stepping stepping = GENERATE(from_range(servo_steppings));
-  GrainScene scene = pressed_box(stepping.law, 20);
+  GrainScene scene = pressed_columns(stepping.law, 20);
   GrainSimulation settled(scene, options_of(stepping, 2e-4));
   settled.advance(200000);
   scene.grains = settled.grains();
@@ -226,8 +202,8 @@ TEST_CASE("a_servo_wall_on_bodies_at_rest_begins_with_the_force_that_they_carry"
 }
 
 TEST_CASE("the_error_of_a_servo_wall_counts_from_where_the_force_of_its_stage_is_reached") {
-  GrainStage low{.name = "low", .scene = pressed_box(NormalLaw::linear_dashpot, 10), .steps = 200000}, high = low,
-                                                                                                       back = low;
+  GrainStage low{.name = "low", .scene = pressed_columns(NormalLaw::linear_dashpot, 10), .steps = 200000}, high = low,
+                                                                                                           back = low;
   high.name = "high";
   high.scene.walls[3].servo->wanted.value = 40;
   back.name = "back";

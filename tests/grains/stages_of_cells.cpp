@@ -157,8 +157,7 @@ TEST_CASE("discs_of_a_cell_are_bonded_across_its_sides") {
   pair.stiffness = 1000;
   GrainScene scene = scene_of(grains, {}, pair);
   scene.cell = PeriodicCell{.corner = {0, 0}, .width = columns * period, .height = columns * period};
-  GrainStage press{.name = "press", .scene = scene, .steps = 300}, tie = press;
-  tie.name = "tie";
+  GrainStage press{.name = "press", .scene = scene, .steps = 300}, tie = named(press, "tie");
   tie.bonds = StageBonds{.gap_tolerance = 0.01, .like = {.normal_dashpot = 1, .normal_spring = 4000}};
   StagedSimulation staged({press, tie}, verlet_options(0.001));
   run_to(staged, 300);

@@ -72,46 +72,6 @@ TEST_CASE("an_empty_case_has_a_checkpoint_too") {
   CHECK(refusal_of([&] { read_checkpoint(folder / "a.h5", case_text); }).says("line 1: nothing there"));
 }
 
-TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {
-  const TemporaryFolder folder;
-  const auto path = folder / "run.checkpoint.h5";
-  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
-  const std::string good = read_file(path);
-  OpenFile file(path, OpenFile::Mode::update);
-  Random random(9);
-  for (std::size_t round = 0; round < 2000; ++round) {
-    const std::size_t at = round < 600 ? round : random.below(good.size());
-    const std::string bad(1, static_cast<char>(good[at] ^ static_cast<char>(1U << random.below(8))));
-    file.write_at(at, std::as_bytes(std::span(bad)));
-    const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
-    CAPTURE(at, refusal.message);
-    REQUIRE(refusal.says("cannot go on from '"));
-    file.write_at(at, std::as_bytes(std::span(good).subspan(at, 1)));
-  }
-  CHECK(same_bits(read_checkpoint(path, case_text).state, state_at(5, 12)));
-  write_file(path, good + "x", true);
-  CHECK(refusal_of([&] { read_checkpoint(path, case_text); }).says("altered"));
-}
-
-TEST_CASE("a_truncated_checkpoint_is_refused") {
-  const TemporaryFolder folder;
-  const auto path = folder / "run.checkpoint.h5";
-  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
-  OpenFile file(path, OpenFile::Mode::update);
-  const std::uint64_t whole = file.size();
-  for (std::uint64_t size = whole; size-- > 0;) {
-    file.truncate(size);
-    const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
-    CAPTURE(size, refusal.message);
-    REQUIRE(refusal.kind == ErrorKind::bad_input);
-    if (size >= 512) {
-      REQUIRE(refusal.says(fmt::format("it is truncated: {} bytes are left of {}", size, whole)));
-    } else {
-      REQUIRE(refusal.says("cannot go on from '"));
-    }
-  }
-}
-
 TEST_CASE("a_checkpoint_of_another_case_is_refused_with_what_differs") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";
@@ -224,24 +184,4 @@ TEST_CASE("a_checkpoint_holds_its_case_the_record_of_the_run_so_far_and_the_mark
       }
     }
   }
-}
-
-TEST_CASE("a_full_disk_leaves_the_last_checkpoint") {
-  const TemporaryFolder folder;
-  const auto path = folder / "run.checkpoint.h5";
-  const CheckpointWriter writer(path, case_text, false);
-  writer.write({state_at(5, 1000)});
-  const std::uint64_t limit = GENERATE(100, 3000, 20000, 70000);
-  const std::string message = error_on_full_disk([&] { writer.write({state_at(6, 1000)}); }, limit);
-  CAPTURE(limit, message);
-  CHECK(message.find("cannot write '") == 0);
-  CHECK(read_checkpoint(path, case_text).state.step == 5);
-  CHECK(folder.files() == 1);
-}
-
-TEST_CASE("a_checkpoint_is_not_overwritten_unasked") {
-  const TemporaryFolder folder;
-  write_file(folder / "run.checkpoint.h5", "mine", false);
-  CHECK(refusal_of([&] { CheckpointWriter(folder / "run.checkpoint.h5", case_text, false); }).says("exists already"));
-  CHECK(read_file(folder / "run.checkpoint.h5") == "mine");
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Tables and matrices as text.
 #include "equidem/output/files/csv.hpp"
 
 #include <bit>
@@ -14,6 +16,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/files/matrix_market.hpp"
 #include "equidem/output/results.hpp"
 
 #include "output/states.hpp"
@@ -99,15 +102,6 @@ TEST_CASE("a_table_of_samples_reads_back_or_is_refused") {
   CHECK(refusal_of([&] { read("value,message\n0.1,\n"); }).says("its columns are those of another sweep"));
   const auto of_version = refusal_of([&] { read("value,text,checksum\n0.1,,a\n"); });
   CHECK(of_version.says("a version other than " + library_version() + ": column 2 is 'text' there and 'message' here"));
-  for (std::size_t at = 0; at < good.size(); ++at) {
-    for (const unsigned bit : {0U, 5U}) {
-      std::string bad = good;
-      bad[at] = static_cast<char>(bad[at] ^ static_cast<char>(1U << bit));
-      const auto refusal = refusal_of([&] { read(bad); });
-      CAPTURE(at, bit, bad);
-      REQUIRE(refusal.says("samples.csv: the samples to continue cannot be read"));
-    }
-  }
 }
 
 TEST_CASE("events_whose_last_row_was_cut_short_are_those_before_it") {
@@ -176,4 +170,17 @@ TEST_CASE("what_was_not_computed_has_no_column") {
   CHECK(cells_of(read_file(folder / "discs.csv"))[0] ==
         std::vector<std::string>{"disc", "x_m", "y_m", "radius_m", "cell_area_m2"});
   CHECK(cells_of(read_file(folder / "contacts.csv"))[0].back() == "lever_j_m");
+}
+
+TEST_CASE("a_matrix_is_written_by_its_lower_triangle_with_indices_from_1_and_all_digits") {
+  CompressedColumns lower;
+  lower.size = 2;
+  lower.first = {0, 2, 3};
+  lower.rows = {0, 1, 1};
+  lower.values = {0.1, -1e-300, 4};
+  lower.component = {0, 1};
+  CHECK(matrix_market(lower, "K\nPa") ==
+        "%%MatrixMarket matrix coordinate real symmetric\n% K\n% Pa\n2 2 3\n1 1 0.1\n2 1 -1e-300\n2 2 4\n");
+  const std::vector<std::vector<double>> columns{{1, 2.5}, {-3, 0}};
+  CHECK(matrix_market(columns, "f") == "%%MatrixMarket matrix array real general\n% f\n2 2\n1\n2.5\n-3\n0\n");
 }

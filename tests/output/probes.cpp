@@ -193,38 +193,6 @@ TEST_CASE("histories_with_other_columns_are_refused") {
   CHECK(go_on(probes).message.empty());
 }
 
-TEST_CASE("a_damaged_history_is_refused_and_stays_as_it_is") {
-  const TemporaryFolder folder;
-  const auto path = folder / "probes.csv";
-  FileMark mark;
-  {
-    ProbeWriter writer(path, probes, discs, {});
-    for (std::int64_t step = 0; step < 4; ++step) record(writer, step);
-    mark = writer.mark();
-    writer.record(5, time_at(5), motions_at(5, discs), velocities_at(5, discs), {}, ledger_at(5), false);
-    CHECK(writer.mark().length == mark.length);
-  }
-  const std::string good = read_file(path);
-  REQUIRE(good.size() > mark.length);
-  const auto refusal = [&](const std::string& text) {
-    write_file(path, text, true);
-    auto refused = refusal_of([&] { ProbeWriter(path, probes, discs, {.continue_from = mark}); });
-    CHECK(read_file(path) == text);
-    return refused;
-  };
-  for (std::size_t at = 0; at < mark.length; at += 13) {
-    std::string bad = good;
-    bad[at] = static_cast<char>(bad[at] ^ 1);
-    CAPTURE(at);
-    REQUIRE(refusal(bad).says("probes.csv' (it was altered since it was written"));
-    REQUIRE(refusal(good.substr(0, at)).says("it is truncated"));
-  }
-  CHECK(refusal(good.substr(0, mark.length)).message.empty());
-  CHECK(refusal(good.substr(0, mark.length) + "5,1\nzero,1\n").message.empty());
-  std::filesystem::remove(path);
-  CHECK(refusal_of([&] { ProbeWriter(path, probes, discs, {.continue_from = mark}); }).says("there is no such file"));
-}
-
 TEST_CASE("probes_that_cannot_measure_are_refused") {
   const TemporaryFolder folder;
   const auto start = [&](const std::vector<Probe>& with) {
@@ -237,25 +205,9 @@ TEST_CASE("probes_that_cannot_measure_are_refused") {
   CHECK(start({{"", {1}}}).says("a probe has no name"));
   CHECK(start({{"a", {1}, {ProbeQuantity::stress}}}).says("the probe 'a' has a stress and no box"));
   CHECK(folder.files() == 0);
-  write_file(folder / "probes.csv", "mine", false);
-  CHECK(start(probes).says("exists already"));
-  CHECK(read_file(folder / "probes.csv") == "mine");
   using enum ProbeQuantity;
   CHECK(refusal_of([] { enum_from<ProbeQuantity>("speed"); }).says("unknown quantity of a probe 'speed'"));
   CHECK(enum_from<ProbeQuantity>("displacement") == displacement);
   CHECK(enum_from<ProbeQuantity>("angle") == angle);
   CHECK(enum_from<ProbeQuantity>("spin") == spin);
-}
-
-TEST_CASE("a_full_disk_is_told") {
-  const TemporaryFolder folder;
-  const std::string message = error_on_full_disk(
-      [&] {
-        ProbeWriter writer(folder / "probes.csv", probes, discs, {.interval = 0});
-        for (std::int64_t step = 0;; ++step) record(writer, step);
-      },
-      5000);
-  INFO(message);
-  CHECK(message.find("cannot write '") == 0);
-  CHECK(message.find("Make room on its disk") != std::string::npos);
 }

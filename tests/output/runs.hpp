@@ -19,6 +19,10 @@
 #include "equidem/core/error.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/saved_state.hpp"
+#include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/files/checkpoint.hpp"
+#include "equidem/output/files/frames.hpp"
+#include "equidem/output/files/histories.hpp"
 
 namespace equidem {
 
@@ -60,6 +64,37 @@ inline SavedState state_at(std::int64_t step, std::size_t discs) {
                      {"velocities", 3, numbers_of(velocities_at(step, discs))},
                      {"sums", 1, {s, s / 3, -s}}}};
 }
+
+/// Three discs in a row, two of which touch, and a run of three steps with a checkpoint, frames and a history.
+struct KeptRun {
+  std::filesystem::path folder;
+  Assembly discs = [] {
+    Assembly row;
+    row.centres = {{0, 0}, {2, 0}, {9, 0}};
+    row.radii = {1, 1, 1};
+    row.contacts = {{.i = 0, .j = 1, .lever_i = 1, .lever_j = 1}};
+    return row;
+  }();
+  std::vector<Probe> probes = {{"a", {0, 2}, {ProbeQuantity::displacement, ProbeQuantity::spin}}};
+  std::string case_text = "title = \"tension\"\n";
+  FileMark frames = {}, history = {};  ///< where the run may go on
+
+  void append(FrameWriter& writer, std::int64_t step) const {
+    const BodyContact contact = bonded_contact(discs, 0, {1.0 + static_cast<double>(step), 0.5});
+    writer.append(step, time_at(step), motions_at(step, 3), velocities_at(step, 3), std::vector{contact});
+  }
+  void record(ProbeWriter& writer, std::int64_t step, bool regular = true) const {
+    writer.record(step, time_at(step), motions_at(step, 3), velocities_at(step, 3), {}, ledger_at(step), regular);
+  }
+  void write() {
+    CheckpointWriter(folder / "run.checkpoint.h5", case_text, true).write({state_at(5, 12)});
+    FrameWriter frame_writer(folder, "run", discs, {.overwrite = true});
+    ProbeWriter history_writer(folder / "history.csv", probes, 3, {.overwrite = true});
+    for (std::int64_t step = 0; step < 3; ++step) append(frame_writer, step), record(history_writer, step);
+    frames = frame_writer.mark(), history = history_writer.mark();
+    record(history_writer, 5, false);
+  }
+};
 
 /// Message of the Error of `work` in another process whose files may not grow beyond `bytes`; empty: no error.
 inline std::string error_on_full_disk(const std::function<void()>& work, std::uint64_t bytes) {
