@@ -44,8 +44,8 @@ RESTRAINED = '[effects]\nrotation = "restrained"\n'
 class Displaced:
     """The network with every disc moved at random by about `size` of the spacing, and the forces of the linear law."""
 
-    def __init__(self, program, folder, size):
-        self.model = Model(program, folder, FREE)
+    def __init__(self, program, folder, size, further=""):
+        self.model = Model(program, folder, FREE + further)
         solved = Model(program, folder, TENSION.format(stress=1.0).replace('weighting = "voronoi"\n', ""), "solved")
         out = solved.equidem("solve", "solved")
         self.places = engines.columns(out / "discs.csv", "x_m", "y_m")
@@ -55,11 +55,13 @@ class Displaced:
         self.moved = size * 0.01 * random.standard_normal((len(self.places), 2))
         self.turned = size * random.standard_normal(len(self.places))
         self.forces = np.zeros((len(self.places), 3))
+        self.components = []  # of each contact, normal (tension positive) and tangential
         for (i, j), (x, y, lever_i, lever_j) in zip(ends, geometry):
             along = np.array([x, y]) / math.hypot(x, y)
             across = np.array([-along[1], along[0]])
             apart = self.moved[j] - self.moved[i]
             slip = apart @ across - lever_i * self.turned[i] - lever_j * self.turned[j]
+            self.components.append((KN * (apart @ along), KT * slip))
             force = KN * (apart @ along) * along + KT * slip * across
             self.forces[i] += [*force, lever_i * KT * slip]
             self.forces[j] += [*-force, lever_j * KT * slip]
@@ -86,6 +88,33 @@ def lammps_forces(program, folder):
     plus, minus = (np.stack([engines.dump(out / f"{name}.dump")[key] for key in ("fx", "fy", "tqz")], 1)
                    for name in ("plus", "minus"))
     return worst((plus - minus) / 2, state.forces)
+
+
+def lammps_strengths(program, folder):
+    """Share of the bonds that LAMMPS breaks otherwise than |T| = shear - friction N with friction = shear/tension, of discs displaced so
+    that about half of them break; bonds within 1 % of the limit do not count, since the motion is finite."""
+    lammps = engines.lammps_with_bonds()
+    size, tension = 2e-4, 1e3
+    state = Displaced(program, folder, size, f"[strength]\ntension = {tension}\nshear = {1.5 * tension}\nfriction = 1.5\n")
+    normal, tangential = np.array(state.components).T
+    use = normal / tension + np.abs(tangential) / (1.5 * tension)
+    out = state.model.export("lammps")
+    script = engines.head_of(out / "in.equidem")
+    for disc, (place, moved, turned) in enumerate(zip(state.places, state.moved, state.turned)):
+        x, y = place + moved
+        script += f"set atom {disc + 1} x {x!r} y {y!r} quat 0 0 1 {math.degrees(turned)!r}\n"
+    script += ("compute left all property/local btype batom1 batom2\nrun 1\n"
+               "dump left all local 1 left.dump c_left[1] c_left[2] c_left[3]\nrun 0\n")
+    (out / "strengths.in").write_text(script)
+    engines.run_lammps(lammps, out, "strengths.in")
+    rows = (out / "left.dump").read_text().split("ITEM: ENTRIES")[-1].splitlines()[1:]
+    left = {tuple(sorted(int(float(word)) - 1 for word in row.split()[1:3])) for row in rows}
+    ends = [tuple(sorted(pair)) for pair in engines.columns(folder / "solved" / "contacts.csv", "i", "j").astype(int)]
+    counted = np.abs(use - 1) > 0.01
+    broken = np.array([pair not in left for pair in ends])
+    if not 0.2 < np.mean(use >= 1) < 0.8:
+        raise engines.Failed(f"{np.mean(use >= 1):.0%} of the bonds are to break: no test of strengths")
+    return float(np.mean((broken != (use >= 1))[counted]))
 
 
 def yade_forces(program, folder):

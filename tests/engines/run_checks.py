@@ -29,6 +29,7 @@ CHECKS = [
     ("lammps_bonds", "LAMMPS", "at rest, with prescribed displacements and rotations", 1e-4,
      bonds.odd_part("lammps", bonds.shear)),
     ("lammps_bonds", "LAMMPS", "at rest, with restrained rotations", 1e-4, bonds.odd_part("lammps", bonds.restrained)),
+    ("lammps_bonds", "LAMMPS", "share of bonds that break otherwise, with strengths", 1e-9, bonds.lammps_strengths),
     ("lammps_bonds", "LAMMPS", "period of the lowest mode", 1e-4, vibration.lammps_period),
     ("lammps_bonds", "LAMMPS", "a network that loads and gravity set in motion", 1e-4,
      bonds.run_difference("lammps", bonds.SET_IN_MOTION)),

@@ -174,8 +174,10 @@ class Refusals(ExportTest):
                 (dict(further=RAMP + RUN + turning), ["lammps"], "rotations that follow a schedule", "support of 'top'"),
                 (dict(load='schedule = "slow"', further=long + RUN), ENGINES, "load on 'top'"),
                 (dict(load="moment = 1.0"), ["lammps"], "moments as loads", "yade"),
-                *((dict(further=table), ENGINES, "strengths, notches or dead loads") for table in (
-                    "[strength]\ntension = 1.0\nshear = 2.0\n", '[[dead_load]]\ngroup = "top"\nforce = [0.0, 1.0]\n',
+                (dict(further="[strength]\ntension = 1.0\nshear = 2.0\n"), ENGINES, "friction 0 where shear/tension is 2", "strength.friction"),
+                (dict(further="[strength]\ntension = 1.0\nshear = 2.0\nfriction = 2.0\n"), ("yade",), "strengths of bonds", "lammps"),
+                *((dict(further=table), ENGINES, "notches or dead loads") for table in (
+                    '[[dead_load]]\ngroup = "top"\nforce = [0.0, 1.0]\n',
                     "[[notch]]\nfrom = [0.0, 0.0]\nto = [0.01, 0.0]\n")),
                 (dict(further=damped.format("mass = 10.0")), ENGINES, "damping proportional to mass", "local"),
                 (dict(further=damped.format("contact = 0.1")), ["yade"], "dashpots in bonds"),

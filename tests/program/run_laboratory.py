@@ -92,6 +92,46 @@ class Rock(Laboratory):
             self.assertAlmostEqual(centre[1], along, delta=0.22)
 
 
+class Answers(Laboratory):
+    """What a run states of its sample, beside the readings of the histories."""
+
+    def test_a_biaxial_test_states_the_angles_that_its_histories_give(self):
+        """Means over 3 % of the rows there, over 15 rows here: windows that differ by less than a third."""
+        result, out = self.run_test("biaxial")
+        read, sample = readings.biaxial(out), result["sample"]
+        with self.subTest(read=read, sample=sample):
+            self.assertAlmostEqual(math.degrees(sample["friction_angle"]["peak"]), read["peak"], delta=0.5)
+            self.assertAlmostEqual(math.degrees(sample["friction_angle"]["residual"]), read["late"], delta=0.5)
+            self.assertAlmostEqual(sample["volume_strain"], read["volume"], delta=1e-3)
+            self.assertAlmostEqual(sample["start"], result["stages"][-1]["start"], delta=1e-9)
+            self.assertTrue(sample["peak_has_passed"])
+
+    def test_a_shear_box_states_the_angles_that_its_histories_give(self):
+        result, out = self.run_test("shear_box")
+        read, sample = readings.shear_box(out), result["sample"]
+        with self.subTest(read=read, sample=sample):
+            self.assertAlmostEqual(math.degrees(sample["friction_angle"]["peak"]), read["peak"], delta=1)
+            self.assertAlmostEqual(math.degrees(math.atan(sample["friction_coefficient"]["residual"])), read["late"], delta=1)
+
+    def test_a_strength_is_stated_once_the_load_has_fallen(self):
+        result, out = self.run_test("unconfined")
+        read, sample = readings.unconfined(out, 0.04), result["sample"]
+        with self.subTest(read=read, sample=sample):
+            self.assertAlmostEqual(sample["strength"] / read["strength"], 1, delta=0.02)
+            self.assertTrue(sample["load_has_fallen"])
+            self.assertEqual(sample["strength_of"], "unconfined compressive strength")
+        result, _ = self.run_test("unconfined", "run.duration=3e-3")
+        self.assertFalse(result["sample"]["load_has_fallen"])
+        result, out = self.run_test("brazilian")
+        self.assertAlmostEqual(result["sample"]["strength"] / readings.brazilian(out, 0.05)["strength"], 1, delta=0.02)
+
+    def test_a_loaded_sample_without_history_is_stated(self):
+        case = CASES / "grains_unconfined.toml"
+        done = self.done("run", case, "--set", "run.duration=1e-5", "--set", "output.probe_interval=none")
+        self.assertIn("[output] has no probe_interval", " ".join(done.stdout.split()))
+        self.assertNotIn("\ntest ", self.done("run", CASES / "grains_cradle.toml", "--set", "run.duration=1e-3").stdout)
+
+
 class Heaps(Laboratory):
     def test_a_hopper_counts_what_has_left_it(self):
         """All bodies are above the gate before, and as many are missing above it as are counted below."""

@@ -142,6 +142,7 @@ PUBLIC = {
     "Springs": lambda **more: eq.Springs(1.0, 0.5, **more),
     "assembly": lambda **more: eq.assembly(kind="square", columns=4, rows=4, radius=1.0, **more),
     "calibrate": lambda **more: eq.calibrate(BLOCK, young_modulus=1e9, poisson_ratio=0.1, **more),
+    "consolidate": lambda **more: eq.consolidate(eq.Case(CASES / "grains_biaxial.toml"), void_ratio=0.2, **more),
     "delaunay": lambda **more: eq.delaunay(discs=20, radius=1.0, **more),
     "factorize": lambda **more: eq.factorize(BLOCK, (1.0, 0.5), HELD, **more),
     "fit_springs": lambda **more: eq.fit_springs(BLOCK, (1.0, 0.5), {"K": 1.0}, **more),
@@ -166,8 +167,8 @@ PUBLIC = {
     "show_progress": lambda **more: eq.show_progress(True, **more),
     "threads": lambda **more: eq.threads(**more),
 }
-NOT_CALLED = {"Factor", "FittedSprings", "Frame", "Result", "Simulation", "plot", "BadInput", "ComputationFailed",
-              "EquidemError", "Interrupted"}
+NOT_CALLED = {"ConsolidatedSand", "Factor", "FittedSprings", "Frame", "Result", "Simulation", "plot", "BadInput",
+              "ComputationFailed", "EquidemError", "Interrupted"}
 
 
 def test_the_list_of_public_functions_is_complete():

@@ -209,6 +209,27 @@ def test_measures_of_a_box_are_a_history_too():
     assert list(result.measures.void_ratio) == ["before", "after"]
 
 
+def test_a_test_of_a_sample_has_curves_tables_and_a_plot():
+    pandas = pytest.importorskip("pandas")
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    case = eq.Case(CASES / "grains_sheared_cell.toml").set("run.duration", 0.3)
+    result = case.run()
+    tables = result.histories
+    assert set(tables) == {"history", "energies", "curves"}
+    assert all(isinstance(table, pandas.DataFrame) for table in tables.values())
+    history, curves = tables["history"], tables["curves"]
+    assert len(curves) == (history["cell_strain_xy"] > 0).sum() + 1
+    assert np.array_equal(curves["strain"], np.asarray(history["cell_strain_xy"])[-len(curves):])
+    volume = np.asarray(history["cell_strain_xx"] + history["cell_strain_yy"])[-len(curves):]
+    assert np.allclose(curves["volume_strain"], volume - volume[0], rtol=0, atol=1e-12)
+    labels = [line.get_label() for line in result.plot().lines]
+    assert "shear stress" in labels and "axial stress" in labels
+    assert 0 < result.sample.friction_angle.peak < np.pi / 2 and result.sample.strain == curves["strain"].iloc[-1]
+    path = eq.Case(CASES / "notched_plate.toml").set("quasistatic.max_events", 20).quasistatic()
+    assert {"curve", "load_envelope", "motion_envelope"} <= set(path.histories)
+
+
 def test_pictures_are_drawn(tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")

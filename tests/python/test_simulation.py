@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Simulations are stepped, watched and drawn from Python."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -164,3 +166,97 @@ def test_bodies_that_a_stage_removed_are_not_drawn():
     axes = simulation.plot(values=np.array([1.0, 2.0]))
     assert np.allclose(axes.collections[0].get_offsets(), simulation.positions[:1])
     assert axes.collections[0].get_array().tolist() == [1.0]
+
+
+def box(**more):
+    """A column of discs between a floor and a lid."""
+    discs = [{"position": [0.1, 0.1 + 0.19 * k], "radius": 0.1, "density": 1000.0} for k in range(4)]
+    walls = [{"name": "floor", "point": [0, 0], "normal": [0, 1]}, {"name": "lid", "point": [0, 0.77], "normal": [0, -1]}]
+    walls[1].update(more)
+    return eq.simulation(grain=discs, wall=walls, collisions={"restitution": 0.2, "stiffness": 1e6}, run={"duration": 2.0})
+
+
+def test_a_wall_goes_as_fast_as_it_is_steered():
+    """From the place at which it stands, whatever it did before; the work is that of its force, so that the ledger closes."""
+    simulation = box()
+    simulation.advance(100)
+    at, time = 0.77, simulation.time
+    for velocity in (-0.05, 0.0, 0.02):
+        assert simulation.walls["lid"]["position"] == pytest.approx((0, at), abs=1e-12)
+        simulation.steer("lid", velocity=(0, velocity))
+        simulation.advance(200)
+        at, time = at + velocity * (simulation.time - time), simulation.time
+        assert simulation.walls["lid"]["velocity"] == pytest.approx((0, velocity), abs=1e-9)
+    energy = simulation.energy
+    assert energy["work_of_walls"] > 0 and abs(energy["error"]) < 1e-3 * energy["work_of_walls"]
+    assert energy["work_of_walls"] == pytest.approx(sum(wall["work"] for wall in simulation.walls.values()))
+
+
+def test_a_servo_keeps_what_it_is_steered_to():
+    simulation = box(servo={"force": 100.0})
+    for wanted in (100.0, 300.0, 50.0):
+        if wanted != 100.0:
+            simulation.steer("lid", wanted=wanted)
+        simulation.advance(20000)
+        assert simulation.walls["lid"]["force"][1] == pytest.approx(wanted, rel=0.02)
+
+
+def test_a_cell_deforms_as_it_is_steered():
+    cell = {"periodic": "xy", "width": 0.4, "height": 0.4}
+    discs = [{"position": [0.1 + 0.2 * i, 0.1 + 0.2 * j], "radius": 0.101, "density": 1000.0} for i in (0, 1) for j in (0, 1)]
+    simulation = eq.simulation(grain=discs, cell=cell, collisions={"restitution": 0.2, "stiffness": 1e6},
+                               run={"duration": 1.0, "integrator": "velocity_verlet"})
+    simulation.advance(50)
+    assert simulation.cell["strain"] == (0, 0, 0) and simulation.cell["stress"][0] < 0
+    simulation.steer_cell(yy=-0.1, xy=0.5)
+    start = simulation.time
+    simulation.advance(100)
+    passed = simulation.time - start
+    assert simulation.cell["strain"] == pytest.approx((0, -0.1 * passed, 0.5 * passed), rel=1e-9, abs=1e-15)
+    assert simulation.cell["height"] == pytest.approx(0.4 * np.exp(-0.1 * passed), rel=1e-6)
+
+
+@pytest.mark.parametrize("steer, words", [
+    (lambda s: s.steer("led", velocity=(0, 1)), "'led'"), (lambda s: s.steer("lid", wanted=1.0), "no servo"),
+    (lambda s: s.steer("lid"), "one of velocity and wanted"), (lambda s: s.steer_cell(xy=1.0), "no periodic cell"),
+    (lambda s: s.steer_cell(xz=1.0), "no 'xz'"), (lambda s: s.steer_cell(), "nothing is steered"),
+    (lambda s: s.steer("lid", velocity=(0, float("nan"))), "not finite|not a number|finite")])
+def test_a_motion_that_is_none_changes_nothing(steer, words):
+    simulation, other = box(), box()
+    with pytest.raises(eq.BadInput, match=words):
+        steer(simulation)
+    simulation.advance(50), other.advance(50)
+    assert np.array_equal(simulation.positions, other.positions)
+    assert simulation.cell is None
+
+
+def test_bonded_discs_are_not_steered():
+    with pytest.raises(eq.BadInput, match="schedules"):
+        eq.Case(CASES / "run_pulse.toml").simulation().steer("lid", velocity=(0, 1))
+
+
+def test_a_stage_is_finished_and_its_motions_end_with_it():
+    simulation = two_stages()
+    simulation.finish_stage()
+    assert simulation.step == 10
+    simulation.finish_stage()
+    assert simulation.step == simulation.steps == 20
+
+
+def test_friction_loosens_the_sand_that_is_consolidated():
+    """Between the void ratios of friction 0 and 1; what lies outside of them is refused with both."""
+    case = eq.Case(CASES / "grains_biaxial.toml")
+    with pytest.raises(eq.BadInput, match="out of reach") as refused:
+        eq.consolidate(case, void_ratio=0.6)
+    densest, loosest = map(float, re.findall(r"to (0\.\d+)", str(refused.value)))
+    assert densest < loosest
+    wanted = (densest + loosest) / 2
+    found = eq.consolidate(case, porosity=wanted / (1 + wanted), tolerance=0.1 * (loosest - densest))
+    assert 0 < found.friction < 1 and abs(found.void_ratio - wanted) <= 0.1 * (loosest - densest)
+    simulation = found.case.simulation()
+    simulation.finish_stage()
+    width, height = (abs(simulation.walls[a]["position"][k] - simulation.walls[b]["position"][k])
+                     for k, a, b in ((0, "left", "right"), (1, "bottom", "top")))
+    solid = np.pi * (simulation.assembly.radii ** 2).sum()
+    assert width * height / solid - 1 == pytest.approx(found.void_ratio, rel=1e-12)
+    assert found.porosity == pytest.approx(found.void_ratio / (1 + found.void_ratio))

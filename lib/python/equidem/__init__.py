@@ -19,7 +19,7 @@ from ._arrays import whole
 from .assembly import Assembly, assembly, delaunay, hexagonal, read, square, triangulated
 from .case import Case
 from .errors import BadInput, ComputationFailed, EquidemError, Interrupted
-from .fitting import FittedSprings, fit_springs
+from .fitting import ConsolidatedSand, FittedSprings, consolidate, fit_springs
 from .result import Result
 from .simulation import Frame, Simulation
 from .springs import Springs
@@ -31,9 +31,9 @@ _MOST_THREADS = 1024
 __version__: str = _core.version
 
 __all__ = [
-    "Assembly", "BadInput", "Case", "ComputationFailed", "EquidemError", "Factor", "FittedSprings", "Frame",
-    "Interrupted", "Result", "Simulation", "Springs", "StrengthSample", "assembly", "calibrate", "delaunay",
-    "factorize", "fit_springs", "form_derivatives", "hexagonal", "homogenize", "pack", "pack_discs", "plot", "read",
+    "Assembly", "BadInput", "Case", "ComputationFailed", "ConsolidatedSand", "EquidemError", "Factor",
+    "FittedSprings", "Frame", "Interrupted", "Result", "Simulation", "Springs", "StrengthSample", "assembly",
+    "calibrate", "consolidate", "delaunay", "factorize", "fit_springs", "form_derivatives", "hexagonal", "homogenize", "pack", "pack_discs", "plot", "read",
     "run", "set_threads", "show_progress", "simulation", "solve", "square", "stability", "stiffness_matrix", "study",
     "sweep", "tension_test", "threads", "triangulated",
 ]

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Springs of groups of contacts for wanted moduli, by Gauss-Newton with the exact derivatives of a homogenization."""
+"""Springs of groups of contacts for wanted moduli, by Gauss-Newton with the exact derivatives of a homogenization; the
+friction with which sand is consolidated to a wanted void ratio."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,10 @@ from .assembly import Assembly
 from .errors import BadInput, ComputationFailed
 from .springs import Springs, springs_from
 from .statics import homogenize
+
+if TYPE_CHECKING:
+    from .case import Case
+    from .simulation import Simulation
 
 _KINDS = ("kN", "kT")
 _POSITIVE = {"C11", "C22", "C66", "K", "G", "E_strain", "E_stress"}  # of a stable continuum
@@ -280,3 +285,111 @@ def fit_springs(cell: Assembly, start: Any, targets: Mapping[str, float],
         factors=dict(zip(names, map(float, np.exp(logs)))),
         at_limit=[name for name, log in zip(names, logs) if not low < log < high], misses=misses,
         evaluations=problem.evaluations, singular_values=singular, determined=dict(zip(names, map(float, shares))))
+
+
+@dataclasses.dataclass(frozen=True)
+class ConsolidatedSand:
+    """What `consolidate` found.
+
+    Attributes
+    ----------
+    friction : float
+        Between the bodies while they are consolidated.
+    void_ratio : float
+        At the end of the consolidation.
+    case : Case
+        With that friction.
+    tried : dict
+        Void ratio of each friction that was tried.
+    """
+
+    friction: float
+    void_ratio: float
+    case: Case
+    tried: dict[float, float]
+
+    @property
+    def porosity(self) -> float:
+        """Voids over the whole area."""
+        return self.void_ratio / (1 + self.void_ratio)
+
+
+def consolidate(case: Case, *, void_ratio: float | None = None, porosity: float | None = None,
+                tolerance: float = 2e-3, largest_friction: float = 1.0) -> ConsolidatedSand:
+    """The friction with which the first stage of a case consolidates sand to a wanted void ratio, by bisection: friction
+    keeps discs from sliding into voids, so that the same stress leaves a looser packing (Thornton 2000; Agnolin and Roux
+    2007). Later stages give the sand the friction of its test.
+
+    Parameters
+    ----------
+    case : Case
+        Of discs in a periodic cell, or between two pairs of opposite plates; its first stage, or the whole run, is the
+        consolidation, with the key ``collisions.friction``.
+    void_ratio, porosity : float
+        One of them, at the end of that stage.
+    tolerance : float, optional
+        Of the void ratio. The void ratio of a sample is no smooth function of the friction: few discs may not reach a
+        small one.
+    largest_friction : float, optional
+        Friction is sought from 0 to this.
+
+    Raises
+    ------
+    BadInput
+        A void ratio out of reach, with the range that the frictions 0 and `largest_friction` give.
+    ComputationFailed
+        No friction tried gives the void ratio to the tolerance.
+    """
+    if (void_ratio is None) == (porosity is None):
+        raise BadInput("a void ratio or a porosity is wanted, one of them", "either follows from the other",
+                       "Give void_ratio or porosity")
+    if porosity is not None:
+        if not 0 < porosity < 1:
+            raise BadInput(f"the porosity is {porosity:g}", "it is a share between 0 and 1", "Correct it", "porosity")
+        void_ratio = porosity / (1 - porosity)
+    wanted = float(void_ratio or 0)
+    if not (wanted > 0 and tolerance > 0 and largest_friction > 0):
+        raise BadInput("void_ratio, tolerance and largest_friction are > 0", "one of them is not", "Correct it")
+    tried: dict[float, float] = {}
+
+    def consolidated(friction: float) -> float:
+        simulation = case.copy().set("collisions.friction", friction).simulation()
+        simulation.finish_stage()
+        tried[friction] = _void_ratio(simulation)
+        return tried[friction]
+
+    low, high = 0.0, float(largest_friction)
+    densest, loosest = consolidated(low), consolidated(high)
+    if not densest - tolerance <= wanted <= loosest + tolerance:
+        raise BadInput(f"the void ratio {wanted:.4g} is out of reach",
+                       f"friction 0 consolidates this sand to {densest:.4g} and friction {high:g} to {loosest:.4g}",
+                       "Choose one between them, another grading or stress, or a rolling resistance for looser sand",
+                       "void_ratio")
+    most = 12
+    while min(abs(found - wanted) for found in tried.values()) > tolerance and len(tried) < most:
+        middle = (low + high) / 2
+        if consolidated(middle) < wanted:
+            low = middle
+        else:
+            high = middle
+    friction = min(tried, key=lambda mu: (abs(tried[mu] - wanted), mu))
+    if abs(tried[friction] - wanted) > tolerance:
+        raise ComputationFailed(f"the void ratio {wanted:.4g} is not reached to {tolerance:g}",
+                                f"friction {friction:.4g} is nearest, with {tried[friction]:.4g}: the packing jumps from "
+                                "one friction to the next", "Take more discs, or a larger tolerance")
+    return ConsolidatedSand(friction, tried[friction], case.copy().set("collisions.friction", friction), tried)
+
+
+def _void_ratio(simulation: Simulation) -> float:
+    """Of the periodic cell, or of the box between two pairs of opposite plates."""
+    if simulation.cell is not None:
+        return float(simulation.cell["void_ratio"])
+    bodies, walls = simulation.assembly, simulation.walls
+    spans = []
+    for axis in range(2):
+        pressed = sorted((wall["position"][axis] for wall in walls.values() if wall["force"][axis] != 0))
+        spans.append(pressed[-1] - pressed[0] if len(pressed) == 2 else 0.0)
+    if len(walls) != 4 or min(spans) <= 0 or bodies is None or len(bodies) != len(simulation.positions):
+        raise BadInput("this sample has no void ratio", "it is neither in a periodic cell nor discs between four plates",
+                       "Consolidate it in a [cell], or between two pairs of opposite walls")
+    return float(spans[0] * spans[1]) / (np.pi * float((np.asarray(bodies.radii) ** 2).sum())) - 1

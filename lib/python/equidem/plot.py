@@ -121,6 +121,20 @@ def curve(result: Result, ax: Axes | None = None) -> Axes:
     return axes
 
 
+def stress(result: Result, ax: Axes | None = None) -> Axes:
+    """Stress over strain of `Case.run`, where walls or a cell load a sample; compression positive, of a cell that is
+    pulled tension."""
+    axes = _axes(ax)
+    curves = result.curves
+    for name in curves:
+        if name.endswith("_MPa"):
+            axes.plot(curves.strain, curves[name], label=name.removesuffix("_MPa").replace("_", " "))
+    axes.set_xlabel("strain")
+    axes.set_ylabel("stress, MPa")
+    axes.legend(frameon=False)
+    return axes
+
+
 def energies(result: Result, ax: Axes | None = None) -> Axes:
     """The terms of the energy ledger of `Case.run` over time, those that are zero throughout left out."""
     axes = _axes(ax)
@@ -137,7 +151,7 @@ def energies(result: Result, ax: Axes | None = None) -> Axes:
 
 def of(result: Result, ax: Axes | None = None, **options: Any) -> Axes:
     """The picture that suits a result."""
-    for name, drawn in (("dispersion", dispersion), ("load_envelope", curve), ("energies", energies)):
+    for name, drawn in (("dispersion", dispersion), ("load_envelope", curve), ("curves", stress), ("energies", energies)):
         if name in result and not (name == "energies" and "time_s" not in result.energies):
             return drawn(result, ax, **options)
     if result.assembly is None:

@@ -13,10 +13,13 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .errors import BadInput, without_memory_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
     from . import _core
     from .assembly import Assembly
@@ -126,6 +129,23 @@ class Result(Mapping[str, Any]):
         """The numbers as plain dictionaries and lists, as in result.json; arrays are left out."""
         return dict(self._plain)
 
+    @property
+    def histories(self) -> dict[str, DataFrame]:
+        """Tables of the result, by name, with units in the names of their columns: of a run ``history`` (probes, walls,
+        cell and energies, with ``output.probe_interval``), ``curves`` (stress, volume and friction over the strain of a
+        test), ``measures_history`` and ``energies``; of a path of breaks ``curve`` and its envelopes. It needs pandas.
+        """
+        import pandas
+
+        tables = {}
+        for name, part in self._values.items():
+            columns = dict(part) if isinstance(part, Result) else {}
+            shapes = {np.shape(column) if hasattr(column, "shape") or isinstance(column, list) else () for column
+                      in columns.values()}
+            if len(shapes) == 1 and len(shape := shapes.pop()) == 1 and (part._arrays or shape[0] > 3):
+                tables[name] = pandas.DataFrame(columns)
+        return tables
+
     def save_page(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts,
         figures, warnings and the way to repeat it.
@@ -167,7 +187,8 @@ class Result(Mapping[str, Any]):
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
         """Draw the result with matplotlib: the deformed discs of a solution, the branches of a dispersion, load over
-        motion of a path of breaks, the energies of a run, or the discs of a packing.
+        motion of a path of breaks, stress over strain of a run that tests a sample, the energies of another run, error
+        over time of a study, or the discs of a packing.
 
         Parameters
         ----------

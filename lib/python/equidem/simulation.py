@@ -122,6 +122,62 @@ class Simulation:
         """Terms of the energy ledger, J per metre of depth (spheres: J), and the error of its balance."""
         return self._steps.energy()
 
+    @property
+    def walls(self) -> Mapping[str, Mapping[str, Any]]:
+        """Each wall by its name: position and velocity (x, y) in m and m/s, force (x, y) of the bodies on it in the last
+        step in N/m (spheres: N), moment, and of bodies that collide impulse and work since the start."""
+        return self._steps.walls()
+
+    @property
+    def cell(self) -> Mapping[str, Any] | None:
+        """The periodic cell of bodies that collide: width, height, shift in m, strain (logarithmic) and mean stress in
+        Pa, tension positive, as (xx, yy, xy), void_ratio and coordination_number; None where nothing repeats."""
+        return self._steps.cell()
+
+    def steer(self, wall: str, *, velocity: tuple[float, float] | None = None, wanted: float | None = None) -> None:
+        """Change the motion of a wall of bodies that collide from the present step to the end of its stage.
+
+        Parameters
+        ----------
+        wall
+            Its name.
+        velocity
+            (x, y), m/s; a servo of the wall ends.
+        wanted
+            What its servo keeps: the force in N/m (spheres: N), or the stress in Pa where the case gives a stress.
+
+        Raises
+        ------
+        BadInput
+            No such wall, a wall without servo, a motion that the case refuses too; bonded discs.
+        """
+        if (velocity is None) == (wanted is None):
+            raise BadInput("a wall is steered by one of velocity and wanted", "it has one motion", "Give one of them")
+        moved = None if velocity is None else (float(velocity[0]), float(velocity[1]))
+        self._steps.steer(wall, moved, {} if wanted is None else {"wanted": float(wanted)})
+
+    def steer_cell(self, **values: float) -> None:
+        """Change how the periodic cell deforms from the present step to the end of its stage.
+
+        Parameters
+        ----------
+        values
+            Rates ``xx``, ``yy`` and ``xy`` in 1/s, and stresses ``stress_xx`` and ``stress_yy`` in Pa, tension positive,
+            where the case has [cell.servo]. A rate ends the stress of its component, and a stress its rate.
+
+        Raises
+        ------
+        BadInput
+            As `steer`.
+        """
+        known = ("xx", "yy", "xy", "stress_xx", "stress_yy")
+        for name in values:
+            if name not in known:
+                raise BadInput(f"a cell has no '{name}'", f"it has {', '.join(known)}", "Correct the name")
+        if not values:
+            raise BadInput("nothing is steered", f"none of {', '.join(known)} is given", "Give one")
+        self._steps.steer("", None, {name: float(value) for name, value in values.items()})
+
     def advance(self, steps: int) -> None:
         """Make that many steps, or those until the last stage ends.
 
@@ -132,7 +188,17 @@ class Simulation:
         Interrupted
             After Ctrl-C, between two steps.
         """
-        self._steps.advance(whole("steps", steps, 0))
+        self._steps.advance(whole("steps", steps, 0), False)
+
+    def finish_stage(self) -> None:
+        """Make steps until the present stage ends; of a case without stages, those that are left of its duration.
+
+        Raises
+        ------
+        ComputationFailed, Interrupted
+            As `advance`; a stage that does not meet its end.
+        """
+        self._steps.advance(max(0, self.steps - self.step), True)
 
     @property
     def frame(self) -> Frame:

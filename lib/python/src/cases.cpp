@@ -2,6 +2,7 @@
 /// \file
 /// What is done with a case: verbs, the factorized stiffness matrix, a run that its user steps.
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/statics/adjoint.hpp"
 #include "equidem/statics/equilibrium.hpp"
@@ -238,15 +240,18 @@ class Steps {
     plan_ = job_->plan();
   }
 
-  void advance(std::int64_t steps) {
+  /// \param of_stage stop where a stage ends
+  void advance(std::int64_t steps, bool of_stage) {
     const LongWork working;
     const std::lock_guard lock(mutex_);
     constexpr std::int64_t at_once = 100;
     AnySimulation& stepped = simulation();
-    for (const std::int64_t end = stepped.step() + steps; stepped.step() < end && !stepped.over();) {
+    const std::int64_t end = steps > INT64_MAX - stepped.step() ? INT64_MAX : stepped.step() + steps;
+    while (stepped.step() < end && !stepped.over()) {
       stop_if_interrupted();
       stepped.advance(std::min(at_once, end - stepped.step()));
       if (plan_.watch) plan_.watch(stepped.energy());
+      if (of_stage && stepped.milestone() == stepped.step()) break;
     }
   }
 
@@ -290,6 +295,51 @@ class Steps {
     result["error"] = ledger.error();
     return result;
   }
+  [[nodiscard]] py::dict walls() const {
+    py::dict result;
+    for (const WallState& wall : simulation().walls()) {
+      py::dict state;
+      state["position"] = py::make_tuple(wall.place.x, wall.place.y);
+      state["velocity"] = py::make_tuple(wall.velocity.x, wall.velocity.y);
+      state["force"] = py::make_tuple(wall.force.x, wall.force.y);
+      state["moment"] = wall.moment;
+      if (!bonded()) {
+        state["impulse"] = py::make_tuple(wall.impulse.x, wall.impulse.y);
+        state["work"] = wall.work;
+      }
+      result[py::str(wall.name)] = state;
+    }
+    return result;
+  }
+  [[nodiscard]] py::object cell() const {
+    const std::optional<CellState> cell = simulation().cell();
+    if (!cell) return py::none();
+    py::dict state;
+    state["width"] = cell->width, state["height"] = cell->height, state["shift"] = cell->shift;
+    state["strain"] = py::make_tuple(cell->strain.xx, cell->strain.yy, cell->strain.xy);
+    const Voigt stress = voigt_stress(cell->stress);
+    state["stress"] = py::make_tuple(stress.xx, stress.yy, stress.xy);
+    state["void_ratio"] = cell->void_ratio, state["coordination_number"] = cell->coordination_number;
+    return state;
+  }
+  /// \param wall empty: the cell. \param velocity (x, y), or none
+  void steer(const std::string& wall, const std::optional<std::pair<double, double>>& velocity,
+             const std::map<std::string, double>& numbers) {
+    const std::lock_guard lock(mutex_);
+    auto* staged = dynamic_cast<StagedSimulation*>(&simulation());
+    if (staged == nullptr)
+      bad_input("bonded discs are not steered", "their walls and supports follow the schedules of the case",
+                "Give these in the case, or make a case of bodies that collide ([grains] with [bonds])");
+    Steering how{.wall = wall};
+    if (velocity) how.velocity = Vec2{velocity->first, velocity->second};
+    const auto take = [&](const char* name, std::optional<double>& to) {
+      if (const auto found = numbers.find(name); found != numbers.end()) to = found->second;
+    };
+    take("wanted", how.wanted);
+    take("xx", how.rate_xx), take("yy", how.rate_yy), take("xy", how.rate_xy);
+    take("stress_xx", how.stress_xx), take("stress_yy", how.stress_yy);
+    staged->steer(how);
+  }
   [[nodiscard]] std::shared_ptr<Assembly> bodies() const {
     return plan_.frame_discs == nullptr ? nullptr : std::make_shared<Assembly>(*plan_.frame_discs);
   }
@@ -328,6 +378,9 @@ void bind_cases(py::module_& module) {
       .def("contacts", &Steps::contacts)
       .def("energy", &Steps::energy)
       .def("bodies", &Steps::bodies)
+      .def("walls", &Steps::walls)
+      .def("cell", &Steps::cell)
+      .def("steer", &Steps::steer)
       .def_property_readonly("bonded", &Steps::bonded)
       .def_property_readonly("time_step", &Steps::time_step)
       .def_property_readonly("steps", &Steps::steps)

@@ -4,12 +4,14 @@
 /// as Matrix Market files. A format is one function that makes its files, and one line in a table.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/keys.hpp"
@@ -82,6 +84,25 @@ Problem problem_to_export(Case resolved) {
   return build_problem(std::move(resolved));
 }
 
+/// Strengths of the bonds of a model, which are numbered as the contacts are.
+void add_strengths(EngineModel& model, const Case& resolved, const Assembly& assembly) {
+  if (!resolved.strength && assembly.contact_tension.empty()) return;
+  constexpr double rounding = 1e-9;
+  const StrengthOptions options = resolved.strength.value_or(StrengthOptions{});
+  const ContactStrengths strengths =
+      casefile::with_place(resolved.where("strength"), [&] { return contact_strengths(assembly, options); });
+  model.found.emplace(EngineFeature::strengths, "[strength]");
+  if (options.after_breaking == AfterBreaking::frictional)
+    model.found.emplace(EngineFeature::other_strengths, "after_breaking = \"frictional\"");
+  for (std::size_t k = 0; k < model.bonds.size(); ++k) {
+    const double tension = strengths.tension[k], shear = strengths.shear[k];
+    model.bonds[k].tension = tension, model.bonds[k].shear = shear;
+    if (!(tension > 0 && std::abs(strengths.friction * tension - shear) <= rounding * shear))
+      model.found.emplace(EngineFeature::other_strengths, fmt::format("friction {:g} where shear/tension is {:.6g}",
+                                                                      strengths.friction, shear / tension));
+  }
+}
+
 CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   constexpr double damping_to_rest = 0.2;
   Case given = read_case(options);
@@ -97,9 +118,9 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   EngineModel& model = made.model;
   model.title = resolved.title;
   model.to_rest = !run || run->until_rest;
-  if (resolved.strength || !problem->assembly.contact_tension.empty() || !resolved.notches.empty() ||
-      !resolved.dead_loads.empty())
-    model.found.emplace(EngineFeature::bonds, "strengths, notches or dead loads");
+  add_strengths(model, resolved, problem->assembly);
+  if (!resolved.notches.empty() || !resolved.dead_loads.empty())
+    model.found.emplace(EngineFeature::bonds, "notches or dead loads");
   if (model.to_rest && (!model.motions.empty() || !model.timed_loads.empty()))
     model.found.emplace(EngineFeature::schedules, "in a run until rest");
   if (model.to_rest) model.found.erase(EngineFeature::given_at_start);

@@ -219,7 +219,8 @@ void add_events(Results& out, const BreakageScene& scene, const EventPath& run, 
 }
 
 /// The largest load of all events, of the start and of the ends of legs.
-void add_peak(Results& out, const BreakageScene& scene, const EventPath& run) {
+void add_peak(Results& out, const BreakageScene& scene, const EventPath& run,
+              const std::optional<TestedSection>& section) {
   const std::vector<BreakEvent>& events = run.events();
   const std::vector<LegPoint> points = run.leg_points();
   const auto size_of = [](const auto& point) { return std::abs(point.load); };
@@ -231,6 +232,10 @@ void add_peak(Results& out, const BreakageScene& scene, const EventPath& run) {
         .add("peak/load", "", peak.load, load, {.digits = 9})
         .add("peak/motion", "at the motion", peak.motion, motion)
         .add("peak/lambda", "lambda", peak.lambda);
+    if (section)
+      out.line("strength")
+          .add("peak/section_stress", "", peak.load / section->width, "Pa", {.digits = 9})
+          .add("peak/section_strain", "at a strain of", peak.motion / section->height);
   };
   if (event != events.end() && (point == points.end() || size_of(*event) >= size_of(*point))) {
     add(*event);
@@ -243,8 +248,9 @@ void add_peak(Results& out, const BreakageScene& scene, const EventPath& run) {
   }
 }
 
-void add_loads(Results& out, const BreakageScene& scene, const EventPath& run) {
-  add_peak(out, scene, run);
+void add_loads(Results& out, const BreakageScene& scene, const EventPath& run,
+               const std::optional<TestedSection>& section) {
+  add_peak(out, scene, run, section);
   if (run.events().empty()) return;
   const auto avalanches = [&](const std::string& key, const std::string& name, double BreakEvent::*quantity) {
     const Avalanches found = avalanches_by(run, quantity);
@@ -393,7 +399,7 @@ Results quasistatic_results(const Sequence& sequence) {
   const UnbondedRun* const unbonded = sequence.unbonded;
   Results out = problem_results(sequence.problem, sequence.effects).append(path_results(sequence));
   add_events(out, scene, run, unbonded == nullptr);
-  add_loads(out, scene, run);
+  add_loads(out, scene, run, section_of(scene.assembly, sequence.problem.supports));
   add_energies(out, run);
   if (unbonded != nullptr) {
     out.add("energies/friction", "lost by slip", run.ledger().friction, "N");
@@ -567,7 +573,8 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
   };
   const auto draw = [=](const CommonOptions& into) {
     const Sequence& sequence = *path->sequence;
-    write_figures(into, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
+    write_figures(into, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title,
+                  section_of(sequence.problem.assembly, sequence.problem.supports));
   };
   std::vector<std::string> events{event_table_name};
   if (keeps_state(resolved)) events.emplace_back(path_checkpoint_name);

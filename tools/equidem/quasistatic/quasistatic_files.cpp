@@ -2,6 +2,7 @@
 #include "quasistatic/quasistatic_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -197,7 +198,10 @@ void check_most_events(const FreeKeysOfPath& before, const Case& resolved, std::
 
 namespace {
 
-Series series(const std::string& label, const LoadCurve& curve, SeriesStyle style, PlotColour colour) {
+Series series(const std::string& label, LoadCurve curve, const std::optional<TestedSection>& section, SeriesStyle style,
+              PlotColour colour) {
+  for (double& motion : curve.motion) motion /= section ? section->height : 1;
+  for (double& load : curve.load) load /= section ? 1e6 * section->width : 1;
   return {.label = label, .x = curve.motion, .y = curve.load, .style = style, .colour = colour};
 }
 
@@ -213,23 +217,52 @@ OutputCase of_end(OutputCase wanted) {
 
 /// None where dead loads were not carried, so that lambda never grew.
 void write_curve(const CommonOptions& options, const BreakageScene& scene, const EventPath& run,
-                 const std::string& title) {
+                 const std::string& title, const std::optional<TestedSection>& section) {
   const LoadCurve curve = curve_of(run);
   if (curve.load.empty()) return remove_files(options, plot_files("curve"));
   const DrivenBy driven_by = scene.path.driven_by;
   const bool strain = driven_by == DrivenBy::strain;
   const Plot plot{
       .title = title,
-      .x = {.label = with_unit(strain ? "mean strain" : "motion", unit_of_motion(driven_by))},
-      .y = {.label = with_unit(strain ? "stress" : "load", unit_of_load(driven_by))},
-      .series = {
-          series("events", curve, SeriesStyle::line, PlotColour::sky_blue),
-          series("envelope under motion control", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
-          series("envelope under load control", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)}};
+      .x = {.label = section ? "strain" : with_unit(strain ? "mean strain" : "motion", unit_of_motion(driven_by))},
+      .y = {.label = section ? "stress (MPa)" : with_unit(strain ? "stress" : "load", unit_of_load(driven_by))},
+      .series = {series("events", curve, section, SeriesStyle::line, PlotColour::sky_blue),
+                 series("envelope under motion control", motion_envelope(run), section, SeriesStyle::line,
+                        PlotColour::vermilion),
+                 series("envelope under load control", load_envelope(run), section, SeriesStyle::line_with_points,
+                        PlotColour::black)}};
   write_plot(*options.out, "curve", plot, options.overwrite);
 }
 
 }  // namespace
+
+std::optional<TestedSection> section_of(const Assembly& assembly, std::span<const Support> supports) {
+  const auto moves = [](const std::optional<double>& u) { return u.value_or(0) != 0; };
+  for (const bool along_y : {true, false}) {
+    const auto along = along_y ? &Support::uy : &Support::ux, across = along_y ? &Support::ux : &Support::uy;
+    std::vector<const Support*> sides;
+    bool other_motion = false;
+    for (const Support& support : supports) {
+      other_motion = other_motion || moves(support.*across);
+      if (support.*along) sides.push_back(&support);
+    }
+    if (other_motion || sides.size() != 2 || sides[0]->*along == sides[1]->*along) continue;
+    double width = 0, places[2] = {};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto found = assembly.groups.find(sides[k]->group);
+      if (found == assembly.groups.end() || found->second.tributary_lengths.empty()) return {};
+      const DiscGroup& group = found->second;
+      for (std::size_t d = 0; d < group.discs.size(); ++d) {
+        const Vec2 centre = assembly.centres[static_cast<std::size_t>(group.discs[d])];
+        width += group.tributary_lengths[d] / 2;  // the mean of the two sides
+        places[k] += (along_y ? centre.y : centre.x) / static_cast<double>(group.discs.size());
+      }
+    }
+    const double height = std::abs(places[1] - places[0]);
+    return height > 0 ? std::optional(TestedSection{width, height}) : std::nullopt;
+  }
+  return {};
+}
 
 std::vector<std::string> names_of_end_state(const OutputCase& wanted) {
   return state_names(of_end(wanted), "");
@@ -242,8 +275,9 @@ std::vector<std::string> names_of_figures(const OutputCase& wanted) {
 }
 
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
-                   const EventPath& run, std::span<const std::size_t> cut, const std::string& title) {
-  write_curve(options, scene, run, title);
+                   const EventPath& run, std::span<const std::size_t> cut, const std::string& title,
+                   const std::optional<TestedSection>& section) {
+  write_curve(options, scene, run, title, section);
   if (!wanted.picture) return;
   PictureOptions picture{.title = title, .colour = DiscColour::none};
   for (const std::size_t contact : cut) picture.cracks.push_back({static_cast<std::int64_t>(contact), CrackKind::cut});

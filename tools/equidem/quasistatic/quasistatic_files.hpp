@@ -58,9 +58,19 @@ inline constexpr const char* path_checkpoint_name = "quasistatic.checkpoint.h5";
 std::vector<std::string> names_of_end_state(const OutputCase& wanted);
 std::vector<std::string> names_of_figures(const OutputCase& wanted);
 
-/// The curve of load against motion with its envelopes, and the picture of the cracks.
+/// The sample between two opposite sides that supports move: stress is load over width, strain motion over height.
+struct TestedSection {
+  double width = 0;   ///< the sum of the tributary lengths of a side, m
+  double height = 0;  ///< between the centres of the discs of the sides, m
+};
+/// None: the supports do not move two sides along one axis.
+std::optional<TestedSection> section_of(const Assembly& assembly, std::span<const Support> supports);
+
+/// The curve of load against motion, of a section in MPa against strain, with its envelopes, and the picture of the
+/// cracks.
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
-                   const EventPath& run, std::span<const std::size_t> cut, const std::string& title);
+                   const EventPath& run, std::span<const std::size_t> cut, const std::string& title,
+                   const std::optional<TestedSection>& section);
 
 /// discs.csv, contacts.csv and state.vtm of the end of a path; none: those of an earlier path in the folder are
 /// removed.

@@ -119,7 +119,7 @@ Results step_results(RunJob& job, const RunPlan& plan) {
 /// \param with_files whether the run draws its end
 Results dry_run_results(RunJob& job, bool with_files) {
   const RunPlan plan = job.plan();
-  Results out = job.scene();
+  Results out = job.scene("");
   // the scene, its lists and its contacts at the end take their memory as in a run
   static_cast<void>(job.simulation().body_contacts());
   const double drawing = with_files ? job.bytes_of_drawing() : 0;
@@ -145,10 +145,12 @@ Results dry_run_results(RunJob& job, bool with_files) {
 /// time_step, ...; steps, time, energy {terms, elastic, dissipated, input, error, relative_error},
 /// particle_steps_per_second, bytes_per_disc or bytes_per_grain, and the results of the job.
 /// \param failed the run did not come to its end: what then cannot be computed is left out
-Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result, bool failed) {
+/// \param history text of history.csv
+Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result, bool failed,
+                    const std::string& history) {
   const AnySimulation& simulation = job.simulation();
   const double body_steps = static_cast<double>(result.steps_done) * static_cast<double>(simulation.motions().size());
-  Results out = job.scene().append(step_results(job, plan));
+  Results out = job.scene(history).append(step_results(job, plan));
   out.line("steps")
       .add("steps", "", simulation.step(), "", {Shown::count})
       .add("time", "to t =", simulation.time(), "s")
@@ -370,7 +372,9 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   RunJob& job = *shared_job;
   RunPlan plan = job.plan();
   if (options.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
-  const HistoryFolder tables(options.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
+  const bool tables_wanted = (plan.probe_interval && (arrays_wanted() || job.needs_history())) ||
+                             (plan.recorder != nullptr && arrays_wanted());
+  const HistoryFolder tables(options.out, tables_wanted);
   if (tables.is_temporary()) plan.frame_interval.reset();
   const auto shared_result = std::make_shared<RunResult>();
   const RunResult& result = *shared_result;
@@ -389,12 +393,16 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   const StopsHeldBack held_back(failure);
   StageTimes times = job.times();
   times.add("steps", result.seconds);
-  Results results = run_results(job, plan, result, failure.has_value());
+  Results results = run_results(job, plan, result, failure.has_value(), tables.history());
   results.set("complete", true);
   if (!failure && search != nullptr) results.append(accuracy_results(reached_by_step(*search)));
   deliver_run(options, "done", std::move(results), std::move(times), shared_job, shared_result, failure,
               arrays_wanted() ? tables.history() : "");
-  if (arrays_wanted()) hand_over(tables.arrays(result.record.energies, job.simulation().family(), plan.body));
+  if (!arrays_wanted()) return true;
+  std::vector<ResultArray> arrays = tables.arrays(result.record.energies, job.simulation().family(), plan.body);
+  for (auto& [name, column] : job.curves(tables.history()))
+    arrays.push_back(array_of("curves/" + name, "", std::move(column), 1));
+  hand_over(std::move(arrays));
   return true;
 }
 
@@ -408,7 +416,7 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
   const std::optional<Error> failure = failure_of([&] { results = job.relax(times); });
   if (failure && failure->kind() == ErrorKind::bad_input) throw *failure;
   const StopsHeldBack held_back(failure);
-  if (failure) results = job.scene();
+  if (failure) results = job.scene("");
   results.set("complete", true);
   deliver_run(options, "at_rest", std::move(results), std::move(times), shared_job, std::make_shared<const RunResult>(),
               failure);

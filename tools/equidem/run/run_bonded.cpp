@@ -340,7 +340,7 @@ Results BondedRun::relax(StageTimes& times) {
       scene_, {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest});
   times.add("relaxation", watch.lap());
   at_rest_ = std::move(rest.motions);
-  Results out = scene()
+  Results out = scene("")
                     .line("rest", rest.report())
                     .set("steps", rest.steps)
                     .set("force_evaluations", rest.evaluations)
@@ -418,7 +418,7 @@ int BondedRun::order() const {
   return order_of(options_);
 }
 
-Results BondedRun::scene() const {
+Results BondedRun::scene(const std::string& /*history*/) const {
   const RunCase& run = this->run();
   const bool small = run.motion == LoopKind::Motion::small;
   Results out = problem_results(problem_, simulation_.effects(), AssemblyKeys::size);

@@ -101,7 +101,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] RunPlan plan() override;
   [[nodiscard]] const char* body_name() const override { return "disc"; }
   [[nodiscard]] StageTimes times() const override { return problem_.times; }
-  [[nodiscard]] Results scene() const override;
+  [[nodiscard]] Results scene(const std::string& history) const override;
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;

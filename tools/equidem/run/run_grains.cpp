@@ -546,9 +546,27 @@ void GrainRun::draw(const CommonOptions& into, const RunResult& result) const {
                        .groups = now.colours,
                        .bonds = now.bonds.bonds,
                        .walls = now.walls,
+                       .cell = simulation_.present().placed_cell(),
                        .started = case_.scene.grains,
                        .paths = paths},
                       into.overwrite);
+}
+
+LoadedSample GrainRun::loaded_sample() const {
+  LoadedSample sample{.discs = case_.scene.grains};
+  if (case_.body != Body::disc) return sample;
+  sample.bonded = !case_.scene.bonds.empty();
+  const std::vector<StageReport>& begun = simulation_.reports();
+  if (case_.stages.empty()) sample.stages.push_back({0, &case_.scene});
+  for (std::size_t k = 0; k < case_.stages.size(); ++k) {
+    sample.stages.push_back(
+        {k < begun.size() ? static_cast<double>(begun[k].first) * step_.step : INFINITY, &case_.stages[k].scene});
+    sample.bonded = sample.bonded || case_.stages[k].bonds.has_value();
+  }
+  if (bodies_come_and_go(case_)) return sample;
+  for (std::size_t k = 0; k < case_.scene.grains.size(); ++k)
+    sample.solid_area += case_.scene.grains[k].inertia.mass / case_.densities[k];
+  return sample;
 }
 
 std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
@@ -592,11 +610,16 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
     part("the table of breaks", files, [this](const CommonOptions& into) { write_breaks(into); });
   }
   if (case_.output.picture) {
+    if (case_.output.probe_interval && needs_history()) {
+      std::vector<std::string> files;
+      for (const char* plot : SampleTest::plot_names) std::ranges::move(plot_files(plot), std::back_inserter(files));
+      part("the plots of the test", std::move(files), [this](const CommonOptions& into) {
+        if (const auto test = SampleTest::read(read_file(*into.out / "history.csv"), loaded_sample()))
+          for (const auto& [name, plot] : test->plots(case_.title)) write_plot(*into.out, name, plot, into.overwrite);
+      });
+    }
     part("the picture", {"picture.svg", "picture.png"},
          [this, &result](const CommonOptions& into) { draw(into, result); });
-    part("the plot of energies", plot_files("energy_plot"), [this, &result](const CommonOptions& into) {
-      write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, further);
-    });
     if (case_.output.probe_interval && !case_.probes.empty())
       part("the paths of probes", plot_files("paths_plot"),
            [this](const CommonOptions& into) { write_probe_paths(into, case_); });
@@ -607,6 +630,9 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
       const auto started =
           result.record.paths.empty() ? std::span<const Grain>(case_.scene.grains) : std::span<const Grain>();
       add_film(case_, walls_, first_colours, started, result.record.film);
+    });
+    part("the plot of energies", plot_files("energy_plot"), [this, &result](const CommonOptions& into) {
+      write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, further);
     });
   }
   if (measures_) {

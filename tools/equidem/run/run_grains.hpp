@@ -16,6 +16,7 @@
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
+#include "equidem/output/run/sample_test.hpp"
 
 #include "case_text.hpp"
 #include "command.hpp"
@@ -85,7 +86,10 @@ class GrainRun final : public RunJob {
   [[nodiscard]] AnySimulation& simulation() override { return simulation_; }
   [[nodiscard]] RunPlan plan() override;
   [[nodiscard]] const char* body_name() const override { return "grain"; }
-  [[nodiscard]] Results scene() const override;
+  [[nodiscard]] bool needs_history() const override { return SampleTest::loads(loaded_sample()); }
+  [[nodiscard]] Results scene(const std::string& history) const override;
+  [[nodiscard]] std::vector<std::pair<std::string, std::vector<double>>> curves(
+      const std::string& history) const override;
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
@@ -110,6 +114,8 @@ class GrainRun final : public RunJob {
   void write_tables(const CommonOptions& into) const;
   void write_breaks(const CommonOptions& into) const;
   void draw(const CommonOptions& into, const RunResult& result) const;
+  /// The sample and its stages.
+  [[nodiscard]] LoadedSample loaded_sample() const;
   /// Bonds that broke.
   [[nodiscard]] Results breaks() const;
   /// Contacts as the present stage has them.

@@ -466,10 +466,15 @@ void GrainRun::write_breaks(const CommonOptions& into) const {
   write_plot(folder, "breaks_plot", plot, into.overwrite);
 }
 
-Results GrainRun::scene() const {
+Results GrainRun::scene(const std::string& history) const {
   Results out;
   if (!case_.title.empty()) out.block(case_.title + "\n\n");
   out.set("title", case_.title);
+  if (!history.empty()) {
+    if (const auto test = SampleTest::read(history, loaded_sample())) out.append(test->results());
+  } else if (!case_.output.probe_interval && needs_history()) {
+    out.line("test", "no stress over strain: the walls or the cell load a sample, but [output] has no probe_interval");
+  }
   add_bodies(out, case_, walls_);
   add_effects(out, simulation_.effects());
   add_law(out, case_);
@@ -480,6 +485,20 @@ Results GrainRun::scene() const {
   for (const std::string& sentence : gaps_in_walls(case_)) out.warning("WARNING", sentence);
   add_bonds(out, case_, step_);
   return out;
+}
+
+std::vector<std::pair<std::string, std::vector<double>>> GrainRun::curves(const std::string& history) const {
+  std::vector<std::pair<std::string, std::vector<double>>> curves;
+  if (!needs_history()) return curves;
+  const auto test = SampleTest::read(history, loaded_sample());
+  if (!test) return curves;
+  for (const auto& [name, plot] : test->plots("")) {
+    for (const Series& series : plot.series) {
+      if (curves.empty()) curves.emplace_back("strain", series.x);
+      curves.emplace_back(series.column, series.y);
+    }
+  }
+  return curves;
 }
 
 Results GrainRun::step() const {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/casefile/grains/grain_case.hpp"
@@ -38,8 +39,16 @@ class RunJob {
   /// Seconds of the stages before the run.
   [[nodiscard]] virtual StageTimes times() const { return {}; }
 
-  /// Title, bodies, effects, law or integrator.
-  [[nodiscard]] virtual Results scene() const = 0;
+  /// Whether the answers of a test need a history, also where no file of it is wanted.
+  [[nodiscard]] virtual bool needs_history() const { return false; }
+  /// Title, the answers of a test, bodies, effects, law or integrator.
+  /// \param history text of history.csv; empty: none was written
+  [[nodiscard]] virtual Results scene(const std::string& history) const = 0;
+  /// Curves of a test with their names, over its strain, the first; none: there is no test.
+  [[nodiscard]] virtual std::vector<std::pair<std::string, std::vector<double>>> curves(
+      const std::string& /*history*/) const {
+    return {};
+  }
   /// The time step and the limits that it keeps.
   [[nodiscard]] virtual Results step() const = 0;
   /// Events of the run other than energies.

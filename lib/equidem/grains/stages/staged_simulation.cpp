@@ -263,10 +263,9 @@ GrainScene StagedSimulation::scene_of(std::span<const StageReport> reports, std:
 }
 
 void StagedSimulation::begin_stage() {
-  const EnergyLedger before = energy();
   const std::size_t next = number() + 1;
   const GrainStage& stage = stages_[next];
-  Start start{.walls = {}, .initial = start_.initial, .potential = before.potential, .changes = start_.changes};
+  Start start{.walls = {}, .initial = start_.initial, .changes = start_.changes};
   if (const auto cell = present_.cell()) start.strain = cell->strain;
   const std::vector<std::int32_t> origins = wall_origins(stage, stages_[number()]);
   const std::vector<WallState> standing = present_.walls();
@@ -283,19 +282,97 @@ void StagedSimulation::begin_stage() {
     std::vector<Grain> bodies = present_.grains();
     change_bodies(bodies, stage.bodies, first_added(next), report);
     bonds = bonds_of(next, bonds_, bodies, present_.placed_cell(), present_.contacts());
-    present_.change(scene_of(reports, std::move(bodies), start, bonds), origins);
+    report.bonds_made = bonds.all.size() - bonds_.all.size();
+    GrainScene scene = scene_of(reports, std::move(bodies), start, bonds);
+    go_on_in(std::move(scene), origins, std::move(start), std::move(bonds));
   } catch (const Error& error) {
     throw error.at(stage.where());
   }
   report.effects = active_effects(present_.effects());
-  report.bonds_made = bonds.all.size() - bonds_.all.size();
   reports_ = std::move(reports);
+  steered_.clear();
+}
+
+void StagedSimulation::go_on_in(GrainScene scene, const std::vector<std::int32_t>& walls, Start start, Bonds bonds) {
+  const EnergyLedger before = energy();
+  present_.change(std::move(scene), walls);
+  start.potential = before.potential;
   start_ = std::move(start);
   bonds_ = std::move(bonds);
   const EnergyLedger after = present_.energy();
   const double stored = before.kinetic + before.elastic();
   const double change = after.kinetic + after.elastic() - stored + (after.cohesion - before.cohesion);
   if (std::abs(change) > energy_rounding * stored) start_.changes += change;
+}
+
+namespace {
+
+Schedule constant(double value) {
+  return {.value = value};
+}
+
+void steer_wall(GrainScene& scene, double time, const Steering& how) {
+  const auto found = std::ranges::find(scene.walls, how.wall, &Wall::name);
+  if (found == scene.walls.end())
+    bad_input(fmt::format("no wall is called '{}'", how.wall),
+              scene.walls.empty() ? "the scene has none" : fmt::format("there are {}", joined(names_of(scene.walls))),
+              "Correct the name");
+  if (how.wanted && !found->servo)
+    bad_input(fmt::format("the wall '{}' has no servo", how.wall), "a force is kept by one",
+              "Give the wall a servo in the case, or steer its velocity");
+  if (how.wanted) found->servo->wanted = constant(*how.wanted);
+  if (!how.velocity) return;
+  constexpr double longest = 1e9;  // s
+  const auto ramp = [&](double speed) {
+    return Schedule{.kind = Schedule::Kind::table, .times = {time, time + longest}, .values = {0, speed * longest}};
+  };
+  found->servo.reset();
+  found->move_x = how.velocity->x == 0 ? Schedule{} : ramp(how.velocity->x);
+  found->move_y = how.velocity->y == 0 ? Schedule{} : ramp(how.velocity->y);
+}
+
+void steer_cell(GrainScene& scene, const Steering& how) {
+  if (!scene.cell)
+    bad_input("there is no periodic cell to steer", "the case has no [cell]", "Steer a wall, by its name");
+  PeriodicCell& cell = *scene.cell;
+  const auto set = [&](Schedule& rate, std::optional<Schedule> CellServo::*kept, const std::optional<double>& new_rate,
+                       const std::optional<double>& stress) {
+    if (stress && !cell.servo)
+      bad_input("the cell has no servo", "a stress is kept by one, which has a max_rate",
+                "Give the case [cell.servo], or steer rates");
+    if (stress) (*cell.servo).*kept = constant(*stress), rate = {};
+    if (!new_rate) return;
+    rate = constant(*new_rate);
+    if (cell.servo) ((*cell.servo).*kept).reset();
+  };
+  set(cell.rate_xx, &CellServo::stress_xx, how.rate_xx, how.stress_xx);
+  set(cell.rate_yy, &CellServo::stress_yy, how.rate_yy, how.stress_yy);
+  if (how.rate_xy) cell.rate_xy = constant(*how.rate_xy);
+}
+
+}  // namespace
+
+void StagedSimulation::steer(const Steering& how) {
+  if (reports_.back().over) {
+    if (over()) bad_input("the run is over", "there is no step that a motion could change", "Give the case more steps");
+    begin_stage();
+  }
+  auto steered = steered_;
+  steered.emplace_back(time(), how);
+  GrainScene scene = scene_of(reports_, present_.grains(), start_, bonds_);
+  for (const auto& [since, one] : steered) one.wall.empty() ? steer_cell(scene, one) : steer_wall(scene, since, one);
+  const std::vector<WallState> standing = present_.walls();
+  std::vector<std::int32_t> all(standing.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (std::size_t w = 0; w < standing.size(); ++w) {
+    Wall& wall = scene.walls[w];
+    const Vec2 moved = standing[w].place - wall.displacement(time()) - wall.point;
+    wall.point += moved, wall.end += moved;
+  }
+  check_servos(scene, options_.law);
+  if (scene.cell) check_cell(scene, options_);
+  go_on_in(std::move(scene), all, start_, bonds_);
+  steered_ = std::move(steered);
 }
 
 // Saved states.

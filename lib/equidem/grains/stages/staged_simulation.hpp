@@ -16,6 +16,15 @@
 
 namespace equidem {
 
+/// Motions that a user changes between two steps, until the stage ends.
+struct Steering {
+  std::string wall = {};              ///< name; empty: of the periodic cell
+  std::optional<Vec2> velocity = {};  ///< of the wall, m/s: it has no servo from then on
+  std::optional<double> wanted = {};  ///< of its servo: force, N (discs: N/m), or stress, Pa
+  std::optional<double> rate_xx = {}, rate_yy = {}, rate_xy = {};  ///< of the cell, 1/s: it keeps no such stress then
+  std::optional<double> stress_xx = {}, stress_yy = {};            ///< that the servo of the cell keeps, Pa
+};
+
 /// A stage that does not meet its end within its limit stops the simulation: advance() throws there, and again in every
 /// call. Energies that change where a stage begins, because walls or bodies go or come, or springs change, are in
 /// EnergyLedger::work_of_stages. Bodies and bonds keep one number through the run: first those of the first scene, then
@@ -49,6 +58,10 @@ class StagedSimulation final : public AnySimulation {
   /// \throws Error as GrainSimulation and, where a stage begins, as make_bonds: the state is then that before it;
   ///         (computation_failed) if a stage does not meet its end
   void advance(std::int64_t steps) override;
+  /// Change the motion of a wall or of the cell from the present step on. The saved states of a simulation that was
+  /// steered do not contain it.
+  /// \throws Error (bad_input): no such wall, servo or cell, a motion that the scene refuses; then nothing has changed
+  void steer(const Steering& how);
   [[nodiscard]] std::int64_t step() const override { return present_.step(); }
   [[nodiscard]] std::int64_t milestone() const override;
   [[nodiscard]] bool over() const override;
@@ -96,6 +109,8 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] Bonds bonds_in(const SavedState& state, std::size_t begun) const;
   [[nodiscard]] std::vector<Grain> bodies_in(const SavedState& state, std::size_t begun) const;
   void begin_stage();
+  /// Go on in a scene; what that changes of the energies is in the ledger.
+  void go_on_in(GrainScene scene, const std::vector<std::int32_t>& walls, Start start, Bonds bonds);
   void look_for_end();
   [[nodiscard]] bool holds(const StageEnd& end);
   [[noreturn]] void refuse_endless() const;
@@ -107,6 +122,7 @@ class StagedSimulation final : public AnySimulation {
   Bonds bonds_;
   GrainSimulation present_;
   std::vector<StageReport> reports_;
+  std::vector<std::pair<double, Steering>> steered_;  ///< in the present stage, with their times
 };
 
 }  // namespace equidem

@@ -385,8 +385,10 @@ EngineFile readme_of(const EngineModel& model, Engine engine) {
             "N/m², N/m.\n"
           : "Units: SI; masses and forces are those of whole spheres; springs N/m.\n";
   text += fmt::format("Time step {} s, stable; {}.\n", exact(model.time_step),
-                      model.bonded ? "motions are finite here, bonds neither break nor carry forces at the start"
-                                   : "tangential springs are without force at the start");
+                      !model.bonded ? "tangential springs are without force at the start"
+                      : model.found.contains(EngineFeature::strengths)
+                          ? "motions are finite here, bonds that break are gone, none carries a force at the start"
+                          : "motions are finite here, bonds neither break nor carry forces at the start");
   for (const auto& [feature, instance] : model.found) {
     const EngineFeatureRow& row = entry_of(feature);
     if (!row.carried_by(engine) && row.accept != nullptr) text += fmt::format("Accepted: {}; {}.\n", row.name, row.why);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ enum class EngineFeature {
   contact_points_of_no_radii,
   shapes,
   bonds,
+  strengths,
+  other_strengths,
   cells,
   given_at_start,
   turning,
@@ -81,9 +84,16 @@ struct EnumNames<EngineFeature> {
       {shapes, "bodies that are neither discs nor spheres", false, false,
        "their contacts and moments of inertia are others", "Take discs, or 'equidem run'"},
       {bonds, "bonds other than one spring kN >= 0 and one kT >= 0 between two bonded discs", false, false,
-       "its bonds store energy, are one a pair, do not resist bending and are written without strength",
-       "Take out what is named here (negative kT, kM or bond_width, [strength], [[notch]], [[dead_load]], [bonds]), or "
-       "use 'equidem solve', 'quasistatic' or 'run'"},
+       "its bonds store energy, are one a pair, do not resist bending and are all there at the start",
+       "Take out what is named here (negative kT, kM or bond_width, [[notch]], [[dead_load]], [bonds]), or use "
+       "'equidem "
+       "solve', 'quasistatic' or 'run'"},
+      {strengths, "strengths of bonds", true, false, "a cohesive contact that broke goes on to push",
+       "Export to lammps, or take out [strength]"},
+      {other_strengths, "strengths whose friction is not shear/tension, or with friction after breaking", false, false,
+       "its bonds are gone where N/tension + |T|/shear reaches 1, which is |T| = shear - friction N for friction = "
+       "shear/tension alone",
+       "Set strength.friction to shear/tension, or use 'equidem quasistatic'"},
       {cells, "periodic cells of bodies that collide, or shorter than twice the longest bond", false, false,
        "a bond joins the nearest images there, and the motion of the sides is not written",
        "Take a larger cell of bonded discs, or let walls bound the bodies"},
@@ -149,7 +159,9 @@ struct EngineBond {
   double length = 0;  ///< distance of the centres, m
   SpringConstants springs;
   SpringConstants dashpots = {};  ///< N s/m per m; 0: none
-  std::int32_t shift_x = 0;       ///< periods from j to its image that i is bonded to
+  /// N/m: it is gone where N/tension + |T|/shear >= 1, N positive in tension; infinite: it does not break.
+  double tension = std::numeric_limits<double>::infinity(), shear = std::numeric_limits<double>::infinity();
+  std::int32_t shift_x = 0;  ///< periods from j to its image that i is bonded to
   std::int32_t shift_y = 0;
 };
 

@@ -95,9 +95,16 @@ class LammpsWriter {
     text += '\n';
   }
 
-  /// kN, kT and their dashpots.
-  [[nodiscard]] static std::array<double, 4> coefficients_of(const EngineBond& bond) {
-    return {bond.springs.kN, bond.springs.kT, bond.dashpots.kN, bond.dashpots.kT};
+  /// kN, kT, their dashpots and strengths.
+  using Coefficients = std::array<double, 6>;
+  [[nodiscard]] static Coefficients coefficients_of(const EngineBond& bond) {
+    constexpr double never = 1e30;
+    return {bond.springs.kN,
+            bond.springs.kT,
+            bond.dashpots.kN,
+            bond.dashpots.kT,
+            std::min(bond.tension, never),
+            std::min(bond.shear, never)};
   }
 
   [[nodiscard]] const char* style() const { return model_.bonded ? "bpm/sphere" : "sphere"; }
@@ -160,10 +167,12 @@ class LammpsWriter {
   }
 
   [[nodiscard]] std::string bonds() const {
-    std::string text = "bond_style bpm/rotational break no smooth no\n";
+    const bool breaks = model_.found.contains(EngineFeature::strengths);
+    std::string text;
+    line(text, "bond_style bpm/rotational break {} smooth no", breaks ? "yes" : "no");
     for (const auto& [k, type] : bond_types_)
-      line(text, "bond_coeff {} {} {} 0 0 1e30 1e30 1e30 1e30 {} {} 0 0", type, exact(k[0]), exact(k[1]), exact(k[2]),
-           exact(k[3]));
+      line(text, "bond_coeff {} {} {} 0 0 {} {} 1e30 1e30 {} {} 0 0", type, exact(k[0]), exact(k[1]), exact(k[4]),
+           exact(k[5]), exact(k[2]), exact(k[3]));
     if (bond_types_.empty()) text += "bond_coeff 1 1 0 0 0 1e30 1e30 1e30 1e30 0 0 0 0\n";
     line(text, "pair_style zero {}\npair_coeff * *", exact(1.2 * longest_bond()));
     line(text, "neighbor {} bin", exact(0.2 * longest_bond()));
@@ -439,7 +448,7 @@ class LammpsWriter {
 
   const EngineModel& model_;
   std::vector<EngineFile> tables_;  ///< of values of atoms, which the commands read
-  std::map<std::array<double, 4>, int> bond_types_;
+  std::map<Coefficients, int> bond_types_;
   std::map<int, int> types_;  // atom type of each kind of bodies
 };
 

@@ -116,6 +116,50 @@ std::vector<bool> shown_of(const GrainPicture& picture) {
   return std::ranges::count(near, true) == 0 ? std::vector<bool>{} : near;
 }
 
+/// Of the periods along x and y; along x alone the latter is 0.
+std::array<Vec2, 2> periods_of(const PeriodicCell& cell) {
+  return {Vec2{cell.width, 0}, Vec2{cell.shift, cell.height}};
+}
+
+/// Of the parallelogram, counter-clockwise.
+std::array<Vec2, 4> corners_of(const PeriodicCell& cell) {
+  const auto [a, b] = periods_of(cell);
+  // the corner is that of the cell without shift about the same centre
+  const Vec2 corner = cell.corner - Vec2{0.5 * cell.shift, 0};
+  return {corner, corner + a, corner + a + b, corner + b};
+}
+
+/// The shortest of a branch and its images, of bodies less than half a period apart.
+Vec2 nearest_image(const PeriodicCell& cell, Vec2 branch) {
+  const auto [a, b] = periods_of(cell);
+  if (cell.along == PeriodicCell::Along::xy) branch -= std::round(branch.y / b.y) * b;
+  return branch - std::round(branch.x / a.x) * a;
+}
+
+/// Images of the grains whose circles reach into the cell, of which the grain is another place.
+std::vector<Grain> images_of(const GrainPicture& picture, std::vector<int>& groups) {
+  std::vector<Grain> images;
+  if (!picture.cell) return images;
+  const auto [a, b] = periods_of(*picture.cell);
+  const Vec2 corner = corners_of(*picture.cell)[0];
+  const bool both = picture.cell->along == PeriodicCell::Along::xy;
+  const double slant = both ? norm(b) / b.y : 1;  // of a length along x over the distance from a slanting side
+  for (std::size_t g = 0; g < picture.grains.size(); ++g)
+    for (const int up : {-1, 0, 1})
+      for (const int along : {-1, 0, 1}) {
+        if ((up == 0 && along == 0) || (up != 0 && !both)) continue;
+        Grain image = picture.grains[g];
+        image.position += static_cast<double>(along) * a + static_cast<double>(up) * b;
+        const Vec2 inside = image.position - corner;
+        const double x = inside.x - (both ? inside.y * b.x / b.y : 0), reach = image.radius * slant;
+        if (x < -reach || x > a.x + reach) continue;
+        if (both && (inside.y < -image.radius || inside.y > b.y + image.radius)) continue;
+        images.push_back(image);
+        if (!picture.groups.empty()) groups.push_back(picture.groups[g]);
+      }
+  return images;
+}
+
 GrainView view_of(const GrainPicture& picture) {
   if (picture.grains.empty()) bad_input("the picture would be empty", "there are no grains", "Draw some");
   GrainView view;
@@ -126,6 +170,8 @@ GrainView view_of(const GrainPicture& picture) {
       if (is_there(places[g])) view.include(places[g], grain.radius);
   }
   view.include_walls(picture.walls, picture.time);
+  if (picture.cell)
+    for (const Vec2 corner : corners_of(*picture.cell)) view.include(corner, 0);
   view.widen();
   return view;
 }
@@ -190,9 +236,29 @@ void draw_ties(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::
                 colour);
 }
 
+/// The frame of the cell; along x alone its two sides.
+void draw_cell(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+  if (!picture.cell) return;
+  const auto corners = corners_of(*picture.cell);
+  if (picture.cell->along == PeriodicCell::Along::xy) {
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      canvas.line(frame.to_page(corners[k]), frame.to_page(corners[(k + 1) % corners.size()]), 1, wall_colour);
+    return;
+  }
+  for (const Vec2 at : {corners[0], corners[1]})
+    if (const auto ends = clipped(frame, at, {0, 1}))
+      canvas.line(frame.to_page((*ends)[0]), frame.to_page((*ends)[1]), 1, wall_colour);
+}
+
+Colour paler(const Colour& colour) {
+  constexpr double share = 0.6;  // of white
+  return {colour.red + share * (1 - colour.red), colour.green + share * (1 - colour.green),
+          colour.blue + share * (1 - colour.blue)};
+}
+
 /// A mark shows how far a grain has turned, where any has: of a disc from the centre to the edge, of an ellipse along
 /// the long half-axis, of a clump in its first disc.
-void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
+void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture, bool pale = false) {
   constexpr double width = 0.8;
   const bool any_turned =
       std::any_of(picture.grains.begin(), picture.grains.end(), [](const Grain& g) { return g.angle != 0; });
@@ -200,7 +266,8 @@ void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
     const Grain& grain = picture.grains[g];
     const double radius = grain.radius * frame.scale;
     const Vec2 centre = frame.to_page(grain.position);
-    const Colour &fill = fills[tone(picture, g)], &edge = inks[tone(picture, g)];
+    const Colour &full = fills[tone(picture, g)], &ink = inks[tone(picture, g)];
+    const Colour fill = pale ? paler(full) : full, edge = pale ? paler(ink) : ink;
     const bool outlined = inscribed_radius(outline_of(grain, picture.clumps)) * frame.scale >= smallest_marked;
     Vec2 mark_from = centre;
     double mark = radius;
@@ -229,7 +296,11 @@ void draw_bonds(Canvas& canvas, const PageFrame& frame, const GrainPicture& pict
   for (const GrainBond& bond : picture.bonds) {
     const Grain &i = picture.grains[bond.i], &j = picture.grains[bond.j];
     const double width = std::min(widest, 0.3 * frame.scale * std::min(i.radius, j.radius));
-    canvas.line(frame.to_page(i.position), frame.to_page(j.position), width, inks[tone(picture, bond.i)]);
+    Vec2 branch = j.position - i.position;
+    if (picture.cell) branch = nearest_image(*picture.cell, branch);
+    const Colour& ink = inks[tone(picture, bond.i)];
+    canvas.line(frame.to_page(i.position), frame.to_page(i.position + branch), width, ink);
+    if (picture.cell) canvas.line(frame.to_page(j.position - branch), frame.to_page(j.position), width, ink);
   }
 }
 
@@ -289,7 +360,13 @@ std::string draw(const GrainPicture& picture, std::size_t whole, const PageFrame
   Canvas canvas(format_of_page, frame.height);
   draw_walls(canvas, frame, picture);
   draw_starts(canvas, frame, picture);
+  GrainPicture around = picture;
+  std::vector<int> groups;
+  const std::vector<Grain> images = images_of(picture, groups);
+  around.grains = images, around.groups = groups;
+  draw_grains(canvas, frame, around, true);
   draw_grains(canvas, frame, picture);
+  draw_cell(canvas, frame, picture);
   draw_bonds(canvas, frame, picture);
   draw_paths(canvas, frame, picture);
   draw_texts(canvas, frame, picture.title, caption_of(picture, whole));

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct GrainPicture {
   std::span<const int> groups = {};       ///< of each grain: its colour; empty: all alike
   std::span<const GrainBond> bonds = {};  ///< lines from centre to centre
   std::span<const Wall> walls = {};
-  std::span<const Grain> started = {};  ///< the scene before it moved, by which grains are left out; empty: none is
+  std::optional<PeriodicCell> cell = {};  ///< its frame, and paler the images of grains that reach into it
+  std::span<const Grain> started = {};    ///< the scene before it moved, by which grains are left out; empty: none is
   /// Places of all grains at moments, NaN where one was not there; empty: no paths.
   std::span<const std::vector<Vec2>> paths = {};
 };
