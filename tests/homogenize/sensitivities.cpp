@@ -192,8 +192,15 @@ TEST_CASE("moduli_of_springs_that_scatter_scatter_as_their_derivatives_say") {
   const ContactSprings springs = springs_of(assembly, false);
   const EffectiveStiffness result = effective_stiffness(assembly, springs);
   constexpr double variation = 0.1;
+  const SpringSensitivities by_springs = spring_sensitivities(assembly, springs, result);
+  const auto scatter = [&](double ModuliChange::*modulus) {
+    return modulus_by_springs(result.stiffness, by_springs, modulus).scatter(springs);
+  };
   const std::vector<double> expected =
-      numbers(scatter_of_moduli(springs, result.stiffness, spring_sensitivities(assembly, springs, result)));
+      numbers(ModuliChange{scatter(&ModuliChange::bulk_modulus_2d), scatter(&ModuliChange::shear_modulus),
+                           scatter(&ModuliChange::young_modulus), scatter(&ModuliChange::poisson_ratio)});
+  const MeanShift shift = mean_shift_of_moduli(assembly, springs, result, by_springs);
+  const std::vector<double> shifts = numbers(shift.shift), errors = numbers(shift.standard_error);
   constexpr std::size_t samples = 400;
   Random random(11);
   std::vector<std::vector<double>> drawn(4);
@@ -214,6 +221,49 @@ TEST_CASE("moduli_of_springs_that_scatter_scatter_as_their_derivatives_say") {
     // a standard deviation of n samples scatters by 1/sqrt(2 n) = 3.5 %; the second order is of the size of variation²
     CHECK(std::sqrt(square) ==
           Approx(variation * expected[k]).epsilon(3 / std::sqrt(2.0 * samples) + variation * variation));
+    // of the mean: its scatter, that of the probes, and the fourth order
+    const double before = numbers(result.stiffness)[k], moved = variation * variation * shifts[k],
+                 error = std::hypot(std::sqrt(square / samples), variation * variation * errors[k]);
+    CAPTURE(mean - before, moved, error);
+    CHECK(std::abs(mean - before - moved) <= 3.5 * error + variation * variation * std::abs(moved));
+  }
+}
+
+TEST_CASE("mean_moduli_shift_by_half_the_second_derivatives_by_the_springs_of_each_contact") {
+  const bool periodic = GENERATE(true, false), bend = GENERATE(true, false);
+  const Assembly assembly = assemblies(periodic)[0].assembly;
+  const ContactSprings springs = springs_of(assembly, bend);
+  const Boundary boundary = periodic ? Boundary::periodic : Boundary::displacement;
+  const auto homogenized = [&](const ContactSprings& of) {
+    return effective_stiffness(assembly, of, {.boundary = boundary, .solver = {}});
+  };
+  const EffectiveStiffness result = homogenized(springs);
+  std::vector<double> expected(4, 0.0);
+  const std::vector<double> middle = numbers(result.stiffness);
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    constexpr double h = 1e-3;
+    const auto changed = [&](double by) {
+      std::vector<SpringConstants> all;
+      std::vector<double> bending;
+      for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+        const double factor = k == c ? 1 + by : 1;
+        all.push_back({factor * springs[k].kN, factor * springs[k].kT});
+        if (bend) bending.push_back(factor * springs.bending(k));
+      }
+      const ContactSprings of(all);
+      return numbers(homogenized(bend ? of.with_bending(bending) : of).stiffness);
+    };
+    const std::vector<double> up = changed(h), down = changed(-h);
+    for (std::size_t k = 0; k < 4; ++k) expected[k] += 0.5 * (up[k] - 2 * middle[k] + down[k]) / (h * h);
+  }
+  const MeanShift found =
+      mean_shift_of_moduli(assembly, springs, result, spring_sensitivities(assembly, springs, result), {.probes = 400});
+  const std::vector<double> shifts = numbers(found.shift), errors = numbers(found.standard_error);
+  for (std::size_t k = 0; k < 4; ++k) {
+    CAPTURE(periodic, bend, k, middle[k], expected[k], shifts[k], errors[k]);
+    CHECK(std::abs(shifts[k] - expected[k]) <= 3.5 * errors[k] + 1e-4 * std::abs(expected[k]));
+    if (k < 3) CHECK(shifts[k] < 0);  // the stiffness is concave in the springs
+    if (k < 3) CHECK(errors[k] < 0.1 * std::abs(shifts[k]));
   }
 }
 

@@ -110,6 +110,16 @@ class ClosedForms(HomogenizeTest):
         for of in ("E", "G", "nu"):
             self.assertGreater((out / f"picture_effect_on_{of}.svg").stat().st_size, 10000)
 
+    def test_scatter_of_springs_softens_the_mean(self):
+        few, many = (self.homogenize(CELL, "--sensitivities", "--second-order", probes)["sensitivities"] for probes in (4, 64))
+        for modulus in ("bulk_modulus_2d", "shear_modulus", "young_modulus"):
+            shift, error = many["mean_shift"][modulus], many["mean_shift_error"][modulus]
+            self.assertLess(shift, -10 * error)
+            self.assertLess(abs(few["mean_shift"][modulus] - shift), 5 * math.hypot(few["mean_shift_error"][modulus], error))
+        done = equidem("homogenize", CELL, "--second-order", "4")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("--sensitivities", done.stderr)
+
     def test_what_springs_do_is_refused_where_it_is_not_known(self):
         for case, options, words, found in ((CELL, ("springs.kT=-0.9e9",), "unstable mode", True),
                                             (FREE, ("homogenize.boundary=traction",), "tractions", True),

@@ -141,6 +141,32 @@ class Solve(ProgramTest):
         self.assertEqual([one["case"] for one in result_in(out)["load_cases"]], ["weight", "tip"])
         self.check_there(out, "discs_weight.csv", "discs_tip.csv")
 
+    def test_springs_share_moduli_and_displacements_among_them(self):
+        out = self.folder / "tension"
+        result = self.result("solve", TENSION, "--sensitivities", "--out", out)
+        changes, rows = result["sensitivities"], rows_of(out / "sensitivities.csv")
+        self.assertEqual(len(rows), result["contacts"])
+        for modulus, of_all in (("young_modulus", 1), ("poisson_ratio", 0)):
+            self.assertAlmostEqual(sum(changes[kind][modulus] for kind in ("kN", "kT")), of_all, delta=1e-9)
+        young = sum(float(row[f"{k}_Pa"]) * float(row[f"dE_d{k}"]) for row in rows for k in ("kN", "kT"))
+        self.assertTrue(math.isclose(young, result["plane_stress"]["young_modulus"], rel_tol=1e-9), young)
+        self.check_there(out, "picture_effect_on_E.svg", "picture_effect_on_nu.svg")
+        out = self.folder / "bent"
+        result = self.result("solve", CASES / "cantilever.toml", "--sensitivities", "--out", out)
+        for one in result["load_cases"]:  # springs twice as stiff halve what hangs down
+            self.check_there(out, f"sensitivities_{one['case']}.csv")
+            changes = [sum(one["sensitivities"][kind]["displacement"][name] for kind in ("kN", "kT"))
+                       for name in one["sensitivities"]["kN"]["displacement"]]
+            self.assertAlmostEqual(math.hypot(*changes), 1, delta=1e-9)
+            self.assertGreater(max(changes), 0.99)
+
+    def test_derivatives_of_an_unstable_state_are_refused(self):
+        done = equidem("solve", TENSION, "--sensitivities", "springs.kT=-0.3e9")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("equilibrium is unstable", done.stderr)
+        self.assertIn("UNSTABLE", done.stdout)  # what was found is delivered
+        self.check_errors(((TENSION, "--sensitivities", "--accuracy", "0.01"), "the contacts of one block"), before=("solve",))
+
     def test_deformations_that_do_not_fit_the_units_are_questioned(self):
         def deformation(*options):
             result = self.result("solve", TENSION, *options)

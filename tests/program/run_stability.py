@@ -168,6 +168,37 @@ class OtherCases(StabilityTest):
             self.assertTrue(-1 < result["critical_ratio"] < 0)
             self.assertLess(result["element_bound_time_step"], result["critical_time_step"])
 
+    def test_springs_share_half_of_the_frequencies_and_speeds_among_them(self):
+        out = self.folder / "out"
+        result = self.stability(CELL, "assembly.density=2000", "--sensitivities", "--frequencies", "3", "--out", out)
+        changes, rows = result["sensitivities"], rows_of(out / "sensitivities.csv")
+        self.assertEqual(len(rows), result["contacts"])
+        self.assertLess(changes["frequency_error"], 1e-3)
+        totals = [(sum(changes[kind]["natural_frequencies"][k] for kind in ("kN", "kT")), changes["frequency_error"])
+                  for k in range(3)]
+        totals += [(sum(changes[kind]["sound_speeds"][speed] for kind in ("kN", "kT")), 1e-9)
+                   for speed in ("Vp_x", "Vs_x", "Vp_y", "Vs_y")]
+        for total, error in totals:
+            self.assertAlmostEqual(total, 0.5, delta=1e-9 + error)
+        for column, of_all in (("df1_d{}_Hz_per_Pa", result["natural_frequencies"][0]),
+                               ("dVs_y_d{}_m_per_s_per_Pa", result["sound_speeds"]["homogenized_transverse"][1])):
+            share = sum(float(row[f"{k}_Pa"]) * float(row[column.format(k)]) for row in rows for k in ("kN", "kT"))
+            self.assertAlmostEqual(share / of_all, 0.5, delta=1e-9 + changes["frequency_error"])
+        self.assertAlmostEqual(changes["kN"]["critical_ratio"], 0, delta=1e-7)  # all springs alike change no ratio
+        self.assertGreater(changes["scatter"]["critical_ratio"], 1e-3)
+        self.check_there(out, "picture_effect_on_f1.svg")
+
+    def test_frequencies_that_coincide_have_no_derivatives(self):
+        result = self.stability(LATTICE, "--sensitivities")
+        report = flat(result["report"])
+        self.assertIn("frequencies coincide", report)
+        self.assertIn(None, result["sensitivities"]["kN"]["natural_frequencies"])
+        self.assertIn("a wave of the infinite assembly", report)
+        done = equidem("stability", LATTICE, "--sensitivities", "springs.kT=-0.4e9")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("unstable network", done.stderr)
+        self.assertIn("critical kT/kN", done.stdout)
+
     def test_magnitudes_beyond_numbers_are_refused(self):
         self.check_errors(*(((f"assembly.{key}={value}",), "1e") for key, value in (
             ("density", "1e-300"), ("density", "1e300"), ("radius", "1e-100"), ("radius", "1e100"))),

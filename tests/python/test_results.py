@@ -68,6 +68,27 @@ def test_the_stiffness_is_the_sum_of_springs_times_its_derivatives():
     assert "dC_dkN" not in eq.homogenize(cell, SPRINGS)
 
 
+def test_a_frequency_changes_with_one_spring_as_its_derivative_says():
+    plate = eq.delaunay(discs=80, radius=5e-3, seed=4)
+    held = [{"group": "left", "ux": 0, "uy": 0}]
+
+    def lowest(kT, **options):
+        return eq.stability(plate, eq.Springs(np.full(len(kT), 1e9), kT), supports=held, **options)
+
+    kT = np.full(len(plate.contacts), 0.5e9)
+    found = lowest(kT, sensitivities=True)
+    slopes = found.dnatural_frequencies_dkT
+    assert slopes.shape == (len(kT), 4) and found.units["dnatural_frequencies_dkT"] == "Hz/Pa"
+    assert np.isfinite(found.dcritical_ratio_dkN).all() and "dVp_x_dkN" not in found
+    contact = slopes[:, 0].argmax()
+    step = np.zeros(len(kT))
+    step[contact] = 1e6
+    difference = (lowest(kT + step).natural_frequencies[0] - lowest(kT - step).natural_frequencies[0]) / 2e6
+    error = found.sensitivities.frequency_error * found.natural_frequencies[0] / 0.5e9  # the step is 0.2 % of the spring
+    assert abs(difference - slopes[contact, 0]) <= 1e-5 * slopes[contact, 0] + error
+    assert "dnatural_frequencies_dkT" not in lowest(kT)
+
+
 def test_load_cases_have_their_own_arrays():
     result = eq.solve(BLOCK, SPRINGS, supports=HELD, loads=[{"group": "right", "force": (1, 0), "case": "pull"},
                                                             {"group": "right", "force": (0, 1), "case": "lift"}])

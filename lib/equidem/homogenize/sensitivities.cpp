@@ -6,6 +6,8 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 
@@ -156,14 +158,6 @@ bool has_shape_sensitivities(const Assembly& assembly, const ContactSprings& spr
   return assembly.periodic() && assembly.contact_arms.empty() && !springs.prestressed();
 }
 
-Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities,
-                          std::size_t contact) {
-  Matrix3 change =
-      springs[contact].kN * sensitivities.by_kN[contact] + springs[contact].kT * sensitivities.by_kT[contact];
-  if (!sensitivities.by_kM.empty()) change = change + springs.bending(contact) * sensitivities.by_kM[contact];
-  return change;
-}
-
 ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change) {
   const auto [K, G] = isotropic_part(stiffness);
   const auto [dK, dG] = isotropic_part(change);
@@ -174,15 +168,119 @@ ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change) {
           .poisson_ratio = 2 * (shear * dK - bulk * dG) / (K + G)};
 }
 
-ModuliChange scatter_of_moduli(const ContactSprings& springs, const Matrix3& stiffness,
-                               const SpringSensitivities& sensitivities) {
-  double squares[4] = {};
-  for (std::size_t c = 0; c < sensitivities.by_kN.size(); ++c) {
-    const ModuliChange of = change_of_moduli(stiffness, change_by_springs(springs, sensitivities, c));
-    const double changes[] = {of.bulk_modulus_2d, of.shear_modulus, of.young_modulus, of.poisson_ratio};
-    for (std::size_t k = 0; k < 4; ++k) squares[k] += changes[k] * changes[k];
+SpringDerivatives modulus_by_springs(const Matrix3& stiffness, const SpringSensitivities& sensitivities,
+                                     double ModuliChange::*modulus) {
+  const auto each = [&](const std::vector<Matrix3>& changes) {
+    std::vector<double> found;
+    found.reserve(changes.size());
+    for (const Matrix3& change : changes) found.push_back(change_of_moduli(stiffness, change).*modulus);
+    return found;
+  };
+  return {each(sensitivities.by_kN), each(sensitivities.by_kT), each(sensitivities.by_kM)};
+}
+
+namespace {
+
+/// What contacts c of the part that carries load pull at discs with, where their springs are multiplied by z_c, under
+/// the states of unit mean strains.
+std::vector<RightHandSide> forces_of_changed_springs(const SampleSolver& sample, const EffectiveStiffness& result,
+                                                     const std::vector<std::int32_t>& numbers, const Assembly& whole,
+                                                     const std::vector<double>& z) {
+  const DegreesOfFreedom& unknowns = sample.unknowns();
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<RightHandSide> cases(3);
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::vector<double>& force = cases[a].force;
+    force.assign(unknowns.held.size(), 0.0);
+    for (std::size_t c = 0; c < numbers.size(); ++c) {
+      const Contact &inside = sample.assembly().contacts[c], &contact = whole.contacts[numbers[c]];
+      const ContactFrame frame = frame_of(whole, numbers[c]);
+      const auto& [i, j, gradient] = end_motions(result, contact, a);
+      const ContactDeformation beside = deformation(frame, i, j);
+      const ContactDeformation mean = affine_deformation(frame, whole.branch(contact), gradient);
+      const SpringConstants& k = sample.springs()[c];
+      const ContactForce f = linear_spring_force(
+          k, ContactDeformation{z[c] * (beside.normal + mean.normal), z[c] * (beside.tangential + mean.tangential)});
+      const double bending =
+          sample.springs().bends() ? z[c] * bending_moment(sample.springs().bending(c), i.theta, j.theta) : 0;
+      const auto add = [&](std::int32_t disc, Vec2 pull, double moment) {
+        const std::size_t first = static_cast<std::size_t>(disc) * b;
+        force[first] += pull.x, force[first + 1] += pull.y;
+        if (b == 3) force[first + 2] += moment / unknowns.rotation_scale;
+      };
+      const Vec2 pull = force_on_i(frame, f);
+      add(inside.i, pull, moment_on_i(frame, f) + bending);
+      add(inside.j, -pull, moment_on_j(frame, f) - bending);
+    }
+    for (std::size_t k = 0; k < force.size(); ++k)
+      if (unknowns.held[k] != 0) force[k] = 0;
   }
-  return {std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2]), std::sqrt(squares[3])};
+  return cases;
+}
+
+/// The second change of E and nu with those of K and G: d²E = -8 (G dK - K dG)²/(K + G)³, d²nu = 4 (dK + dG)
+/// (K dG - G dK)/(K + G)³.
+ModuliChange second_change(const EffectiveModuli& moduli, const ModuliChange& change) {
+  const double K = moduli.bulk_modulus_2d, G = moduli.shear_modulus, sum = K + G;
+  const double dK = change.bulk_modulus_2d / sum, dG = change.shear_modulus / sum;
+  const double turn = (K * dG - G * dK) / sum;
+  return {0, 0, -8 * turn * turn * sum, 4 * (dK + dG) * turn};
+}
+
+constexpr double ModuliChange::*every_modulus[] = {&ModuliChange::bulk_modulus_2d, &ModuliChange::shear_modulus,
+                                                   &ModuliChange::young_modulus, &ModuliChange::poisson_ratio};
+
+}  // namespace
+
+MeanShift mean_shift_of_moduli(const Assembly& assembly, const ContactSprings& springs,
+                               const EffectiveStiffness& result, const SpringSensitivities& sensitivities,
+                               const MeanShiftOptions& options) {
+  refuse_unsuitable(result);
+  if (options.probes < 2)
+    bad_input(fmt::format("{} random probes of the shift of the mean moduli", options.probes),
+              "their scatter is the error of its estimate", "Take 2 or more");
+  ModuliChange by_variances;
+  const EffectiveModuli moduli = effective_moduli(result.stiffness);
+  for (std::size_t c = 0; c < sensitivities.by_kN.size(); ++c) {
+    Matrix3 change = springs[c].kN * sensitivities.by_kN[c] + springs[c].kT * sensitivities.by_kT[c];
+    if (!sensitivities.by_kM.empty()) change = change + springs.bending(c) * sensitivities.by_kM[c];
+    const ModuliChange second = second_change(moduli, change_of_moduli(result.stiffness, change));
+    for (const auto modulus : every_modulus) by_variances.*modulus += 0.5 * second.*modulus;
+  }
+  EffectiveStiffness found;
+  found.effects = result.effects;
+  found.area = result.area;
+  HomogenizeOptions homogenization;
+  homogenization.boundary = result.boundary;
+  homogenization.rotation = options.rotation;
+  homogenization.solver = options.solver;
+  SampleSolver sample = strain_sample(assembly, springs, homogenization, found);
+  const std::vector<std::int32_t> numbers = bearing_contacts(assembly, springs, result);
+  std::vector<std::vector<double>> shifts(std::size(every_modulus));
+  Random random(options.seed);
+  std::vector<double> z(numbers.size());
+  for (int probe = 0; probe < options.probes; ++probe) {
+    for (double& sign : z) sign = random.below(2) == 0 ? -1 : 1;
+    const std::vector<RightHandSide> cases = forces_of_changed_springs(sample, result, numbers, assembly, z);
+    const std::vector<Solution> solutions = sample.solve(cases, found);
+    Matrix3 half;
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) {
+        double work = 0;
+        for (std::size_t k = 0; k < cases[a].force.size(); ++k) work += cases[a].force[k] * solutions[b].motion.high[k];
+        half[a][b] = -work / result.area;
+      }
+    }
+    const ModuliChange shift = change_of_moduli(result.stiffness, half);
+    for (std::size_t m = 0; m < shifts.size(); ++m) shifts[m].push_back(shift.*every_modulus[m]);
+  }
+  MeanShift mean;
+  for (std::size_t m = 0; m < shifts.size(); ++m) {
+    const MeanEstimate of = estimate_mean(shifts[m], 0.95);
+    mean.shift.*every_modulus[m] = of.mean + by_variances.*every_modulus[m];
+    mean.standard_error.*every_modulus[m] = of.standard_error;
+  }
+  return mean;
 }
 
 }  // namespace equidem

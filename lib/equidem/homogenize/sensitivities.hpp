@@ -19,6 +19,7 @@
 
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/statics/adjoint.hpp"
 
 namespace equidem {
 
@@ -50,9 +51,6 @@ ShapeSensitivities shape_sensitivities(const Assembly& assembly, const ContactSp
 /// Whether shape_sensitivities takes the assembly and its springs.
 bool has_shape_sensitivities(const Assembly& assembly, const ContactSprings& springs);
 
-/// The change of the stiffness where the springs of a contact grow by a common factor, over its change, Pa.
-Matrix3 change_by_springs(const ContactSprings& springs, const SpringSensitivities& sensitivities, std::size_t contact);
-
 /// Changes of the moduli (plane stress) by a change of the stiffness: EffectiveModuli linearized.
 struct ModuliChange {
   double bulk_modulus_2d = 0, shear_modulus = 0, young_modulus = 0;
@@ -61,9 +59,34 @@ struct ModuliChange {
 /// \param stiffness Pa, about which moduli change \param change of it
 ModuliChange change_of_moduli(const Matrix3& stiffness, const Matrix3& change);
 
-/// Standard deviations of the moduli over the coefficient of variation of the springs, to first order, where those of
-/// each contact (kN, kT and kM by one factor) scatter independently.
-ModuliChange scatter_of_moduli(const ContactSprings& springs, const Matrix3& stiffness,
-                               const SpringSensitivities& sensitivities);
+/// Derivatives of one of the moduli by the springs.
+SpringDerivatives modulus_by_springs(const Matrix3& stiffness, const SpringSensitivities& sensitivities,
+                                     double ModuliChange::*modulus);
+
+struct MeanShiftOptions {
+  Rotation rotation = Rotation::from_scene;
+  SolverOptions solver = {};
+  int probes = 16;         ///< >= 2; each takes three solutions
+  std::uint64_t seed = 1;  ///< of the probes
+};
+
+/// A mean and its standard error over random probes.
+struct MeanShift {
+  ModuliChange shift, standard_error;
+};
+
+/// The shift of the mean moduli over the square of the coefficient of variation of the springs, to second order, where
+/// those of each contact (kN, kT and kM by one factor s_c of mean 1) scatter independently: half the sum of the second
+/// derivatives by s_c. Along a direction z of the factors, with the states u_a of unit mean strains, the stiffness has
+///
+///   d²C_ab/dt² = -2 b_a . K^-1 b_b/A,   b_a = D^T z k D u_a,
+///
+/// whose mean over random signs z is the sum over contacts (Hutchinson 1990, Commun. Stat. Simul. 19, 433). E and nu
+/// also shift by the variances of K and G, which are known exactly. Forces at rest stay what they are.
+/// \param result, sensitivities of the same assembly and springs
+/// \throws Error (bad_input) for fewer than two probes; as spring_sensitivities, and as effective_stiffness
+MeanShift mean_shift_of_moduli(const Assembly& assembly, const ContactSprings& springs,
+                               const EffectiveStiffness& result, const SpringSensitivities& sensitivities,
+                               const MeanShiftOptions& options = {});
 
 }  // namespace equidem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/adjoint.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "equidem/contact/contact_springs.hpp"
@@ -21,10 +22,10 @@ SpringAndPlaceDerivatives differentiated(const Assembly& assembly, const Contact
                                          std::span<const DiscMotion> a, std::span<const DiscMotion> b,
                                          std::span<const ContactForce> weights) {
   const std::size_t contacts = assembly.contacts.size();
-  SpringAndPlaceDerivatives found{.by_kN = std::vector<double>(contacts),
-                                  .by_kT = std::vector<double>(contacts),
-                                  .by_kM = std::vector<double>(springs.bends() ? contacts : 0),
-                                  .by_position = {}};
+  SpringAndPlaceDerivatives found{{.by_kN = std::vector<double>(contacts),
+                                   .by_kT = std::vector<double>(contacts),
+                                   .by_kM = std::vector<double>(springs.bends() ? contacts : 0)},
+                                  {}};
   if (assembly.contact_arms.empty() && !springs.prestressed()) found.by_position.resize(assembly.size());
   for (std::size_t c = 0; c < contacts; ++c) {
     const Contact& contact = assembly.contacts[c];
@@ -78,6 +79,22 @@ double value_of(const Equilibrium& state, const Measure& measure) {
 }
 
 }  // namespace
+
+double SpringDerivatives::change_by(const ContactSprings& springs, std::size_t contact) const {
+  double sum = springs[contact].kN * by_kN[contact];
+  if (!by_kT.empty()) sum += springs[contact].kT * by_kT[contact];
+  if (!by_kM.empty()) sum += springs.bending(contact) * by_kM[contact];
+  return sum;
+}
+
+double SpringDerivatives::scatter(const ContactSprings& springs) const {
+  double squares = 0;
+  for (std::size_t c = 0; c < by_kN.size(); ++c) {
+    const double change = change_by(springs, c);
+    squares += change * change;
+  }
+  return std::sqrt(squares);
+}
 
 SpringAndPlaceDerivatives form_derivatives(const Assembly& assembly, const ContactSprings& springs,
                                            std::span<const DiscMotion> a, std::span<const DiscMotion> b) {

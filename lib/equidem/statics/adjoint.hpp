@@ -23,10 +23,20 @@
 
 namespace equidem {
 
-/// Derivatives of a number, in its unit over that of the parameter.
-struct SpringAndPlaceDerivatives {
+/// Derivatives of a number by the springs of each contact, in its unit over that of the spring; empty where it has
+/// none.
+struct SpringDerivatives {
   std::vector<double> by_kN, by_kT;  ///< per contact, by Pa
   std::vector<double> by_kM;         ///< per contact, by N; empty where contacts do not bend
+
+  /// The change where the springs of a contact grow by a common factor, over its change.
+  [[nodiscard]] double change_by(const ContactSprings& springs, std::size_t contact) const;
+  /// Standard deviation over the coefficient of variation of the springs, to first order, where those of each contact
+  /// (kN, kT and kM by one factor) scatter independently.
+  [[nodiscard]] double scatter(const ContactSprings& springs) const;
+};
+
+struct SpringAndPlaceDerivatives : SpringDerivatives {
   /// Per disc, by m, while levers keep their shares of the distance, springs and contacts what they are; empty where
   /// contact points are off the line of centres, or forces at rest count.
   std::vector<Vec2> by_position;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "equidem/contact/effects.hpp"
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/statistics.hpp"
@@ -104,6 +105,32 @@ class RatioPencil final : public StiffnessPencil {
   bool stable(double ratio) {
     const FactorReport report = factorize(ratio)->report();
     return report.zero_pivots == mechanisms_ && report.negative_pivots == negative_rotations_;
+  }
+
+  /// Whether one motion alone loses its stiffness within `reach` of r.
+  bool simple(double r, double reach) {
+    const auto negative = [&](double at) { return factorize(at)->report().negative_pivots.value_or(0); };
+    return negative(r - reach) == negative(r + reach) + 1;
+  }
+
+  [[nodiscard]] std::vector<double> by_kN(double r, const std::vector<DiscMotion>& motion) const {
+    const ContactSprings one = with_ratio(springs_, 1);
+    std::vector<double> found(assembly_.contacts.size());
+    double slips = 0;
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      const Contact& contact = assembly_.contacts[c];
+      const bool opposite = (options_.antiperiodic_x && contact.shift_x % 2 != 0) !=
+                            (options_.antiperiodic_y && contact.shift_y % 2 != 0);
+      const double sign = opposite ? -1 : 1;
+      const DiscMotion& j = motion[contact.j];
+      const ContactDeformation of =
+          deformation(frame_of(assembly_, c), motion[contact.i], DiscMotion{sign * j.u, sign * j.theta});
+      const double slip = one[c].kT != 0 ? of.tangential * of.tangential : 0;
+      found[c] = of.normal * of.normal + r * slip;
+      slips += one[c].kN * slip;
+    }
+    for (double& value : found) value /= -slips;
+    return found;
   }
 
   [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
@@ -209,6 +236,9 @@ CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings
   std::vector<double> x;
   result.ratio = search(pencil, options, x);
   if (!x.empty()) result.motion = pencil.motions_of(x);
+  constexpr double alike = 1e-6;
+  if (options.derivatives && !x.empty() && result.ratio < -2 * alike && pencil.simple(result.ratio, alike))
+    result.by_kN = pencil.by_kN(result.ratio, result.motion);
   result.mechanisms = pencil.mechanisms();
   result.factorizations = pencil.factorizations();
   return result;

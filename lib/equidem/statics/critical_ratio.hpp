@@ -66,6 +66,7 @@ struct CriticalRatioOptions {
   bool rotation = true;         ///< free; else restrained
   bool antiperiodic_x = false;  ///< of a periodic cell: motions that change sign from one period to the next along x
   bool antiperiodic_y = false;
+  bool derivatives = false;  ///< by the springs
 };
 
 /// Result of the search.
@@ -75,6 +76,8 @@ struct CriticalRatio {
   std::int64_t factorizations = 0;
   /// The unstable motion, per disc, not normalized; empty where the value was found by bisection.
   std::vector<DiscMotion> motion;
+  /// Per contact, 1/Pa, with kT = r kN: where they are asked for and one motion alone loses stability at r. Else empty.
+  std::vector<double> by_kN;
 };
 
 /// The ratio r_c < 0 below which the assembly is unstable in statics where contacts have kT = r kN: the stiffness with
@@ -84,6 +87,11 @@ struct CriticalRatio {
 /// more factorizations beside the value prove it. Rigid motions and gears that nothing resists are held, in a periodic
 /// cell the translations; other mechanisms are counted as they are at r = 1.
 /// \param springs kN of every contact; where some kT are zero and others are not, the former have none for any r
+///
+/// With the stretches n and slips s of the motion that is lost, r changes with the springs by
+///
+///   dr/dkN = -(n² + r s²)/sum kN s².
+///
 /// \throws Error (bad_input) on options out of range, on contacts off the lines of centres, as number_unknowns does;
 ///         (computation_failed) where K cannot be factorized
 CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,

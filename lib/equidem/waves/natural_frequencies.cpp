@@ -176,12 +176,48 @@ LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, 
   return lowest_eigenvalues(k, vibration.zero_energy_modes_of(a), iterations);
 }
 
+/// The mode a of modal mass 1 has d(omega²) = d(a . K a). Where x errs by e, the energy of what it has of another mode
+/// j is
+///
+///   e.K e <= (bound² / omega²) max_j (omega_j²/(omega_j² - omega²))²
+///
+/// by the error bound of omega² (extreme_eigenvalues.hpp), and of the modes above the next one counts most.
+std::vector<FrequencyDerivatives> derivatives_of(const Assembly& assembly, const ContactSprings& springs,
+                                                 const NaturalFrequencies& found, std::size_t count) {
+  constexpr double alike = 1e-6, parted = 0.05;
+  std::vector<FrequencyDerivatives> result(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double squared = found.squared[k];
+    double farthest = 1, nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < found.squared.size(); ++j) {
+      if (j == k) continue;
+      const double gap = std::abs(found.squared[j] - squared);
+      nearest = std::min(nearest, gap);
+      farthest = std::max(farthest, found.squared[j] / gap);
+    }
+    const double share = found.error_bounds[k] / squared * farthest;
+    FrequencyDerivatives& of = result[k];
+    of.error = share * (2 + share) / 2;
+    of.simple = nearest > alike * squared && share <= parted;
+    if (!of.simple) continue;
+    static_cast<SpringAndPlaceDerivatives&>(of) =
+        form_derivatives(assembly, springs, found.motions[k], found.motions[k]);
+    const double half = 1 / (2 * std::sqrt(squared));
+    for (std::vector<double>* each : {&of.by_kN, &of.by_kT, &of.by_kM})
+      for (double& value : *each) value *= half;
+    for (Vec2& value : of.by_position) value = half * value;
+  }
+  return result;
+}
+
 }  // namespace
 
 NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSprings& springs,
                                        const DegreesOfFreedom& unknowns, const std::vector<Inertia>& inertia,
-                                       const NaturalFrequencyOptions& options) {
+                                       const NaturalFrequencyOptions& given) {
   assert(!springs.any_negative());
+  NaturalFrequencyOptions options = given;
+  if (given.derivatives) ++options.count;
   NaturalFrequencies result;
   Vibration vibration(assembly, springs, unknowns);
   const SpringNetwork network = vibration.network();
@@ -221,6 +257,10 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
     for (std::size_t c = 0; c < x.size(); ++c) x[c] = found.vectors[k * a.size() + c] * a.over_root_mass(c);
     result.motions.push_back(disc_motions(unknowns, x));
   }
+  if (!given.derivatives) return result;
+  const std::size_t kept = std::min(result.squared.size(), static_cast<std::size_t>(given.count));
+  result.derivatives = derivatives_of(assembly, springs, result, kept);
+  result.squared.resize(kept), result.error_bounds.resize(kept), result.motions.resize(kept);
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/statics/adjoint.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
@@ -22,6 +23,16 @@ struct NaturalFrequencyOptions {
   SolverOptions solver = {};
   /// Components of motion, held ones included, up to which the whole spectrum is computed; that of few more is, too.
   std::size_t dense_limit = 150;
+  bool derivatives = false;  ///< of the frequencies by springs; one more is computed, to part the last from the next
+};
+
+/// Derivatives of omega, rad/s over the unit of the parameter; forces at rest stay what they are.
+struct FrequencyDerivatives : SpringAndPlaceDerivatives {
+  /// Frequencies that coincide, within 1e-6 of omega² or as far as the error bounds part them, have no derivatives:
+  /// the lists are empty.
+  bool simple = false;
+  /// The sum over contacts of the errors of k domega/dk is at most about this share of omega.
+  double error = 0;
 };
 
 /// The lowest eigenvalues of K x = omega² M x above those of zero-energy modes, ascending.
@@ -31,12 +42,13 @@ struct NaturalFrequencies {
   /// place.
   std::vector<double> error_bounds;
   std::vector<std::vector<DiscMotion>>
-      motions;                         ///< of all discs, with a modal mass sum m u² + I theta² of 1 kg (per metre)
-  bool converged = false;              ///< to the tolerance
-  std::int64_t zero_energy_modes = 0;  ///< rigid motions and mechanisms, with the frequency 0
-  std::string why_none;                ///< why there are none; empty where they were sought
-  std::string solver;                  ///< of the inverse
-  int iterations = 0;                  ///< 0: the whole spectrum was computed
+      motions;  ///< of all discs, with a modal mass sum m u² + I theta² of 1 kg (per metre)
+  std::vector<FrequencyDerivatives> derivatives = {};  ///< of each, where they are asked for
+  bool converged = false;                              ///< to the tolerance
+  std::int64_t zero_energy_modes = 0;                  ///< rigid motions and mechanisms, with the frequency 0
+  std::string why_none;                                ///< why there are none; empty where they were sought
+  std::string solver;                                  ///< of the inverse
+  int iterations = 0;                                  ///< 0: the whole spectrum was computed
 };
 
 /// Vectors that the search for the lowest eigenvalues keeps, those of zero-energy modes aside.

@@ -11,6 +11,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/sensitivities.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -38,7 +39,8 @@ CriticalMotion critical_of_survey(const WaveSurvey& survey) {
 }
 
 /// Motions that repeat with the cell, and those that change sign from one cell to the next.
-CriticalMotion critical_of_large_cell(const Assembly& assembly, const ContactSprings& springs, bool rotation) {
+CriticalMotion critical_of_large_cell(const Assembly& assembly, const ContactSprings& springs, bool rotation,
+                                      bool derivatives) {
   CriticalMotion critical{.ratio = no_critical_ratio};
   const bool antiperiodic = assembly.size() <= most_discs_of_antiperiodic;
   std::vector<std::string> searched;
@@ -47,18 +49,21 @@ CriticalMotion critical_of_large_cell(const Assembly& assembly, const ContactSpr
     if ((x || y) && !antiperiodic) continue;
     const Vec2 q{x ? std::numbers::pi / assembly.period->x : 0, y ? std::numbers::pi / assembly.period->y : 0};
     const ZonePoint wave{x && y ? "S" : x ? "X" : y ? "Y" : "Gamma", q};
-    double ratio = 0;
+    CriticalRatio found;
     try {
-      ratio =
-          find_critical_ratio(assembly, springs, {}, {.rotation = rotation, .antiperiodic_x = x, .antiperiodic_y = y})
-              .ratio;
+      found = find_critical_ratio(
+          assembly, springs, {},
+          {.rotation = rotation, .antiperiodic_x = x, .antiperiodic_y = y, .derivatives = derivatives});
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::computation_failed || !(x || y)) throw;
       continue;  // gears that turn from cell to cell: this wave stays unsearched
     }
     searched.push_back(wave.name);
-    if (ratio <= critical.ratio) continue;
-    critical.ratio = ratio;
+    constexpr double alike = 1e-6;
+    if (std::abs(found.ratio - critical.ratio) <= alike) found.by_kN.clear(), critical.by_kN.clear();
+    if (found.ratio <= critical.ratio) continue;
+    critical.ratio = found.ratio;
+    critical.by_kN = std::move(found.by_kN);
     critical.wave = wave;
     critical.equivalent = {wave};
   }
@@ -84,9 +89,11 @@ CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprin
                 "bending springs resist rotations too, so that no single kT/kN is critical; with kT of 0 or "
                 "more and kM of 0 or more the assembly is stable"};
   if (survey) return critical_of_survey(*survey);
-  if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);
-  const CriticalRatio found = find_critical_ratio(assembly, springs, supports, {.rotation = rotation});
+  if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation, options.derivatives);
+  CriticalRatio found =
+      find_critical_ratio(assembly, springs, supports, {.rotation = rotation, .derivatives = options.derivatives});
   CriticalMotion critical{.ratio = found.ratio};
+  critical.by_kN = std::move(found.by_kN);
   if (!found.motion.empty()) critical.motion = describe_motion(assembly, found.motion);
   critical.searched =
       supports.empty() ? "all motions of the free body, by inertia" : "all motions that the supports allow, by inertia";
@@ -116,8 +123,9 @@ void add_frequencies(const Assembly& assembly, const ContactSprings& springs, st
   s.times.add("highest frequency", watch.lap());
   s.reached = StabilityStage::time_step;
   if (springs.any_negative() || options.natural_frequencies == 0) return;
-  s.natural = natural_frequencies(assembly, springs, unknowns, inertia,
-                                  {.count = options.natural_frequencies, .solver = options.solver});
+  s.natural = natural_frequencies(
+      assembly, springs, unknowns, inertia,
+      {.count = options.natural_frequencies, .solver = options.solver, .derivatives = options.derivatives});
   s.times.add("natural frequencies", watch.lap());
   s.reached = StabilityStage::natural_frequencies;
 }
@@ -130,6 +138,46 @@ void add_waves(const Assembly& assembly, const ContactSprings& springs, const st
   double mass = 0;
   for (const Inertia& body : inertia) mass += body.mass;
   s.mass_per_area = mass / assembly.area();
+}
+
+/// By the Voigt strain e of the gradient u n^T of a wave along n with the motion u, v² = e . C e/rho.
+SoundDerivatives derivatives_of_sound(const SpringSensitivities& by_springs, double mass_per_area, double angle,
+                                      Vec2 motion, double speed, bool transverse) {
+  const Vec2 n{std::cos(angle), std::sin(angle)};
+  const double e[] = {motion.x * n.x, motion.y * n.y, motion.x * n.y + motion.y * n.x};
+  const auto each = [&](const std::vector<Matrix3>& changes) {
+    std::vector<double> found;
+    found.reserve(changes.size());
+    for (const Matrix3& change : changes) {
+      double sum = 0;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b) sum += e[a] * change[a][b] * e[b];
+      found.push_back(sum / (2 * mass_per_area * speed));
+    }
+    return found;
+  };
+  return {{each(by_springs.by_kN), each(by_springs.by_kT), each(by_springs.by_kM)}, angle, transverse, speed};
+}
+
+void add_sound_derivatives(const Assembly& assembly, const ContactSprings& springs, const EffectiveStiffness& result,
+                           Stability& s) {
+  if (springs.prestressed() || result.effects.restrained ||
+      result.unstable_modes.value_or(springs.any_negative() ? 1 : 0) != 0)
+    return;
+  const SpringSensitivities by_springs = spring_sensitivities(assembly, springs, result);
+  constexpr double alike = 1e-6;
+  for (const double angle : {0.0, std::numbers::pi / 2}) {
+    const auto [p, q, motion] =
+        plane_waves(result.gradient_stiffness, s.mass_per_area, {std::cos(angle), std::sin(angle)});
+    const double apart = alike * std::max(std::abs(p), std::abs(q));
+    if (!(std::abs(p - q) > apart)) continue;
+    const auto add = [&](double squared, Vec2 along, bool transverse) {
+      if (squared > apart)
+        s.sound_derivatives.push_back(
+            derivatives_of_sound(by_springs, s.mass_per_area, angle, along, std::sqrt(squared), transverse));
+    };
+    add(p, motion, false), add(q, {-motion.y, motion.x}, true);
+  }
 }
 
 /// Sound of the homogenized continuum, or why there is none.
@@ -151,6 +199,7 @@ void add_continuum(const Assembly& assembly, const ContactSprings& springs, cons
   }
   for (const double angle : angles)
     s.sound.push_back(plane_waves(homogenized.gradient_stiffness, s.mass_per_area, {std::cos(angle), std::sin(angle)}));
+  if (options.derivatives) add_sound_derivatives(assembly, springs, homogenized, s);
 }
 
 /// Frequencies about a state of rest that is stable under the forces that contacts carry there.
@@ -162,8 +211,9 @@ NaturalFrequencies frequencies_at_rest(const Assembly& assembly, const ContactSp
   if (springs.any_negative() || s.inertia.unstable_modes != 0) return none;
   none.why_none = "the body is free to turn, and the forces at rest that count need not balance";
   if (s.mechanisms.rigid_motions > 2) return none;
-  return natural_frequencies(assembly, springs, number_unknowns(assembly, springs, s.effects, supports), inertia,
-                             {.count = options.natural_frequencies, .solver = options.solver});
+  return natural_frequencies(
+      assembly, springs, number_unknowns(assembly, springs, s.effects, supports), inertia,
+      {.count = options.natural_frequencies, .solver = options.solver, .derivatives = options.derivatives});
 }
 
 /// Time steps are those of the springs: forces at rest change the highest frequency by a share of |N0|/(kN l).

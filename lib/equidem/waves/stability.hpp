@@ -16,6 +16,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/statics/adjoint.hpp"
 #include "equidem/statics/critical_load.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"
@@ -31,6 +32,7 @@ struct StabilityOptions {
   Body body = Body::disc;
   SolverOptions solver = {};    ///< of the homogenized continuum and of natural frequencies
   int natural_frequencies = 4;  ///< number of the lowest, >= 0
+  bool derivatives = false;     ///< by springs: of natural frequencies, the critical ratio and speeds of sound
 };
 
 /// In the order in which they are found; what an assembly does not have is left out.
@@ -57,6 +59,15 @@ struct CriticalMotion {
   std::vector<ZonePoint> equivalent = {};  ///< all points of symmetry that reach it
   std::string motion = {};                 ///< in words; empty where it is a wave
   std::string searched = {};               ///< the motions that were searched, in words, or why none were
+  /// Per contact, 1/Pa, as of CriticalRatio; of a surveyed cell, whose springs would change in all cells, none.
+  std::vector<double> by_kN = {};
+};
+
+/// Derivatives of a speed of sound of the homogenized continuum, m/s over the unit of the spring.
+struct SoundDerivatives : SpringDerivatives {
+  double angle = 0;  ///< rad, of the direction from the x axis
+  bool transverse = false;
+  double speed = 0;  ///< m/s
 };
 
 struct Stability {
@@ -77,8 +88,9 @@ struct Stability {
   std::int64_t cell_discs = 0;       ///< number of discs in the smallest cell of a periodic assembly
   std::optional<WaveSurvey> survey;  ///< of a periodic assembly with a small enough cell
   std::vector<PlaneWaves> sound;     ///< of the homogenized continuum, for the directions of the survey, or for two
-  double mass_per_area = 0;          ///< kg/m²
-  std::string no_continuum;          ///< why there is no homogenized stiffness
+  std::vector<SoundDerivatives> sound_derivatives;  ///< along x and y, where both speeds differ and are not 0
+  double mass_per_area = 0;                         ///< kg/m²
+  std::string no_continuum;                         ///< why there is no homogenized stiffness
   StageTimes times;
 
   /// "stable", "unstable", or "mechanism".

@@ -180,7 +180,8 @@ PlaneWaves plane_waves(const Matrix4& gradient_stiffness, double mass_per_area, 
   // n . A n lies above the middle where the larger eigenvalue belongs to the wave along n.
   const Vec2 an{a[0][0] * unit.x + coupling * unit.y, coupling * unit.x + a[1][1] * unit.y};
   const double sign = dot(unit, an) >= middle ? 1 : -1;
-  return {middle + sign * radius, middle - sign * radius};
+  const double turned = 0.5 * std::atan2(coupling, half_difference) + (sign < 0 ? 0.5 * std::numbers::pi : 0);
+  return {middle + sign * radius, middle - sign * radius, {std::cos(turned), std::sin(turned)}};
 }
 
 }  // namespace equidem

@@ -68,6 +68,7 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
 struct PlaneWaves {
   double longitudinal_squared = 0;  ///< of the wave whose motion is most along its direction
   double transverse_squared = 0;
+  Vec2 longitudinal_motion;  ///< unit; that of the transverse wave is across it
 };
 
 /// Eigenvalues of A_ik = n_j n_l C_ijkl over the density: rho c² u = A u.

@@ -227,7 +227,9 @@ class Case:
 
         Arrays: displacements (n, 2) in m, rotations (n,) in rad, contact_forces (contacts, 2), normal (tension
         positive) and tangential, in N/m, supported_discs, reactions in N/m and reaction_moments in N; of several load
-        cases each under its name.
+        cases each under its name. With ``sensitivities=True`` the derivatives by the springs of each contact: of a
+        tension test dE_dkN, dnu_dkN (plane stress), ...; else of the mean displacement of each group that loads act on,
+        and of the mean stress, dGROUP_ux_dkN, dstress_xx_dkN, ...
         """
         return self.run_verb("solve", **options)
 
@@ -257,7 +259,11 @@ class Case:
 
         Arrays: modes["0"].displacements, modes["0"].rotations, ... of the lowest natural frequencies; of small periodic
         cells dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies; where forces at rest count,
-        buckling.displacements and buckling.rotations of the mode that is lost at the critical load.
+        buckling.displacements and buckling.rotations of the mode that is lost at the critical load. With
+        ``sensitivities=True`` the derivatives by the springs of each contact: dnatural_frequencies_dkN and _dkT, and
+        _dkM where contacts bend, (contacts, frequencies), NaN where frequencies coincide; of periodic assemblies those
+        of the speeds of sound of the homogenized continuum, dVp_x_dkN, dVs_x_dkN, dVp_y_dkN, ...; dcritical_ratio_dkN,
+        with kT = r kN, where the critical kT/kN is not that of a wave of a small cell.
         """
         return self.run_verb("stability", **options)
 

@@ -24,7 +24,7 @@ Tables = Mapping[str, Any]
 
 
 def solve(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables] = (), loads: Iterable[Tables] = (),
-          accuracy: float | None = None, **tables: Any) -> Result:
+          accuracy: float | None = None, sensitivities: bool = False, **tables: Any) -> Result:
     """The equilibrium of an assembly under supports and loads; parameters and arrays as those of `Case` and
     `Case.solve`.
 
@@ -32,6 +32,8 @@ def solve(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables]
     ----------
     accuracy : float, optional
         Wanted relative error of the motions; the result says what was reached.
+    sensitivities : bool
+        Whether to return the derivatives by the springs of what is measured.
 
     Raises
     ------
@@ -40,11 +42,12 @@ def solve(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables]
     ComputationFailed
         Where the stiffness matrix is singular to working precision.
     """
-    return Case(assembly=assembly, springs=springs, supports=supports, loads=loads, **tables).solve(accuracy=accuracy)
+    case = Case(assembly=assembly, springs=springs, supports=supports, loads=loads, **tables)
+    return case.solve(accuracy=accuracy, sensitivities=sensitivities)
 
 
 def tension_test(assembly: Assembly, springs: Any = None, *, stress: float = 1e6, gauge: str | None = None,
-                 accuracy: float | None = None, **tables: Any) -> Result:
+                 accuracy: float | None = None, sensitivities: bool = False, **tables: Any) -> Result:
     """Abe's tension test (1996, section 3): a free block is pulled along x.
 
     Parameters
@@ -53,13 +56,16 @@ def tension_test(assembly: Assembly, springs: Any = None, *, stress: float = 1e6
         Pa.
     gauge : str, optional
         Where strains are read: "centre", "quarter" or "ends".
+    sensitivities : bool
+        Whether to return the derivatives of E and nu (plane stress) by the springs.
     """
     test = {"kind": "uniaxial_tension", "stress": stress, "gauge": gauge}
-    return Case(assembly=assembly, springs=springs, test=test, **tables).solve(accuracy=accuracy)
+    case = Case(assembly=assembly, springs=springs, test=test, **tables)
+    return case.solve(accuracy=accuracy, sensitivities=sensitivities)
 
 
 def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = None, sensitivities: bool = False,
-               **tables: Any) -> Result:
+               second_order: int | None = None, **tables: Any) -> Result:
     """Effective stiffness (3, 3) in Pa (Voigt, engineering shear) and moduli of the continuum that an assembly stands
     for, with bounds and the bound of the error; arrays as those of `Case.homogenize`.
 
@@ -67,8 +73,12 @@ def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = 
     ----------
     sensitivities : bool
         Whether to return the derivatives of the stiffness by the springs of each contact and by positions and radii.
+    second_order : int, optional
+        With these: random probes for the shift of the mean moduli by scatter of the springs,
+        ``sensitivities.mean_shift``, over the square of their coefficient of variation.
     """
-    return Case(assembly=cell, springs=springs, **tables).homogenize(accuracy=accuracy, sensitivities=sensitivities)
+    case = Case(assembly=cell, springs=springs, **tables)
+    return case.homogenize(accuracy=accuracy, sensitivities=sensitivities, second_order=second_order)
 
 
 def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = None, **moduli: Any) -> Result:
@@ -89,10 +99,18 @@ def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = 
     return Case(assembly=cell, material={"plane": plane, **material}, **tables).calibrate()
 
 
-def stability(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables] = (), **tables: Any) -> Result:
+def stability(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables] = (), sensitivities: bool = False,
+              **tables: Any) -> Result:
     """Mechanisms, waves, the critical kT/kN, natural frequencies and time steps; arrays as of `Case.stability`.
-    `density` in kg/m³ is that of the discs."""
-    return Case(assembly=assembly, springs=springs, supports=supports, **tables).stability()
+    `density` in kg/m³ is that of the discs.
+
+    Parameters
+    ----------
+    sensitivities : bool
+        Whether to return the derivatives of frequencies, speeds of sound and the critical kT/kN by the springs.
+    """
+    case = Case(assembly=assembly, springs=springs, supports=supports, **tables)
+    return case.stability(sensitivities=sensitivities)
 
 
 class Factor:

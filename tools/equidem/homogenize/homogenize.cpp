@@ -19,6 +19,7 @@
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "accuracy.hpp"
@@ -458,6 +459,7 @@ namespace {
 
 struct HomogenizeVerb : CommonOptions {
   bool resume = false, sensitivities = false;
+  int probes = 0;
   std::optional<double> accuracy;
 };
 
@@ -485,16 +487,6 @@ BoundedStiffness homogenize(const Problem& problem, std::optional<Error>& failur
       return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
     });
   });
-}
-
-/// \param failure set where there are none, unless it is
-std::optional<SpringSensitivities> sensitivities_of(const Problem& problem, const EffectiveStiffness& result,
-                                                    std::optional<Error>& failure) {
-  std::optional<SpringSensitivities> found;
-  const std::optional<Error> refused =
-      failure_of([&] { found = spring_sensitivities(problem.assembly, problem.springs.springs, result); });
-  if (!failure) failure = refused;
-  return found;
 }
 
 void write_states(const CommonOptions& options, const Problem& problem, const EffectiveStiffness& result) {
@@ -532,6 +524,7 @@ struct Harmonic {
 };
 
 struct Homogenized {
+  std::optional<MeanShift> shift = {};
   std::optional<Problem> problem = {};
   BoundedStiffness stiffness = {};
   std::optional<SpringSensitivities> sensitivities = {};
@@ -554,9 +547,11 @@ std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr
   if (sensitivities) {
     const auto write = [=](const CommonOptions& into) {
       if (found->sensitivities)
-        write_sensitivities(into, *found->problem, found->stiffness.result.stiffness, *found->sensitivities);
+        write_sensitivities(into, *found->problem,
+                            moduli_by_springs(found->stiffness.result.stiffness, *found->sensitivities));
     };
-    parts.push_back({sensitivities_name, write, OutputPart::page, files_of_sensitivities(resolved.output)});
+    parts.push_back({sensitivities_name, write, OutputPart::page,
+                     files_of_sensitivities(resolved.output, pictures_of_sensitivities())});
   }
   parts.push_back(assembly_part(resolved.output, [=]() -> const Assembly& { return found->problem->assembly; }));
   const auto write_all = [=](const CommonOptions& into) {
@@ -607,12 +602,7 @@ void add_solver_of_complex(Results& results, const SolverOptions& asked) {
 /// A disc, of the motions under one boundary that are kept beside the solution under the next: measured.
 constexpr double bytes_beside_others = 350;
 
-/// Memory of the derivatives by springs, a disc.
-double bytes_of_sensitivities(const Problem& problem) {
-  const double kinds = problem.springs.springs.bends() ? 3 : 2;
-  const Assembly& assembly = problem.assembly;
-  return kinds * sizeof(Matrix3) * static_cast<double>(assembly.contacts.size()) / static_cast<double>(assembly.size());
-}
+constexpr double of_stiffness = 9, of_moduli = 4;  // numbers that have derivatives by each spring
 
 void dry_run_homogenization(const HomogenizeVerb& options, const Problem& problem) {
   const std::optional<double>& accuracy = options.accuracy;
@@ -635,7 +625,7 @@ void dry_run_homogenization(const HomogenizeVerb& options, const Problem& proble
   dry_run(options, problem, results, AssemblyKeys::all,
           {.of_complex = problem.resolved.viscoelastic.has_value(),
            .bytes_of_disc = (boundaries.size() > 1 ? bytes_beside_others : 0) +
-                            (options.sensitivities ? bytes_of_sensitivities(problem) : 0),
+                            (options.sensitivities ? bytes_of_sensitivities(problem, of_stiffness + of_moduli) : 0),
            .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)});
 }
 
@@ -668,6 +658,8 @@ void homogenize(const HomogenizeVerb& options) {
   found->harmonic = harmonic_of(problem, result.boundary, failure);
   Stopwatch watch;
   if (options.sensitivities) found->sensitivities = sensitivities_of(problem, result, failure);
+  if (options.probes > 0 && found->sensitivities)
+    found->shift = mean_shift_of(problem, result, *found->sensitivities, options.probes, failure);
   const double seconds_of_sensitivities = watch.lap();
   const std::optional<Harmonic>& harmonic = found->harmonic;
   const StopsHeldBack held_back(failure);
@@ -680,7 +672,10 @@ void homogenize(const HomogenizeVerb& options) {
     relation = relation_beside(*constants, spring_relation(problem.resolved, problem.assembly));
   Results results = homogenized_results(problem, problem_results(problem, result.effects), problem.assembly.periodic(),
                                         found->stiffness, fabric(problem.assembly), relation);
-  if (found->sensitivities) results.append(spring_effects(problem, result.stiffness, *found->sensitivities));
+  if (found->sensitivities)
+    results.append(spring_effects(problem, moduli_by_springs(result.stiffness, *found->sensitivities),
+                                  "changes of the moduli (plane stress)"));
+  if (found->shift) results.append(shift_results(result, *found->shift));
   results.set("strain_of_states", written_strain);
   if (options.accuracy)
     results.append(accuracy_results(solver_accuracy(
@@ -717,6 +712,13 @@ Run declare_homogenize(CLI::App& command) {
   command.add_flag(
       "--sensitivities", options->sensitivities,
       "derivatives of the moduli by the springs of each contact:\nsensitivities.csv and pictures in --out");
+  command
+      .add_option("--second-order", options->probes,
+                  "with --sensitivities: by how much scatter of the springs shifts the\nmean moduli, from N random "
+                  "probes; each takes three solutions")
+      ->check(whole_number(2, 10000))
+      ->needs("--sensitivities")
+      ->type_name("N");
   add_accuracy_option(
       command, options->accuracy,
       "random cells: the size and number that tell the moduli to X;\nelse: fail unless the error is below X");

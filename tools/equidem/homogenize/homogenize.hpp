@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/error.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/sensitivities.hpp"
-#include "equidem/output/files/csv.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"
+#include "spring_effects.hpp"
 
 namespace equidem {
 
@@ -44,16 +45,19 @@ void homogenize_ensemble(const CommonOptions& options, const Case& resolved, boo
 ///         all means; (interrupted)
 void homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy);
 
-inline constexpr const char* sensitivities_name = "sensitivities.csv";
+/// \param failure set where there are none, unless it is
+std::optional<SpringSensitivities> sensitivities_of(const Problem& problem, const EffectiveStiffness& result,
+                                                    std::optional<Error>& failure);
+/// The shift of mean moduli by scatter of the springs. \param failure likewise
+std::optional<MeanShift> mean_shift_of(const Problem& problem, const EffectiveStiffness& result,
+                                       const SpringSensitivities& sensitivities, int probes,
+                                       std::optional<Error>& failure);
+/// Over the mean moduli.
+Results shift_results(const EffectiveStiffness& result, const MeanShift& found);
 
-/// Returns the part of the report and of the JSON.
-Results spring_effects(const Problem& problem, const Matrix3& stiffness, const SpringSensitivities& found);
-
-/// A table with a row for each contact: contact, i, j, kN_Pa, kT_Pa, [kM_N,] and of each spring the derivatives of K,
-/// G, E and nu (plane stress); pictures of what the springs do to E, G and nu, where [output] asks for some.
-std::vector<std::string> files_of_sensitivities(const OutputCase& wanted);
-void write_sensitivities(const CommonOptions& options, const Problem& problem, const Matrix3& stiffness,
-                         const SpringSensitivities& found);
+/// K, G, E and nu (plane stress) with their derivatives by the springs, and the symbols of those that may be drawn.
+std::vector<SpringDependent> moduli_by_springs(const Matrix3& stiffness, const SpringSensitivities& found);
+std::vector<std::string> pictures_of_sensitivities();
 
 /// dC_dkN, dC_dkT and, where contacts bend, dC_dkM, in 1/m²: (contacts, 3, 3).
 std::vector<ResultArray> sensitivity_arrays(const std::shared_ptr<const SpringSensitivities>& found);

@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/measured_derivatives.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 #include "accuracy.hpp"
@@ -101,7 +102,8 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
   return out.set("pivot_growth", e.pivot_growth);
 }
 
-Results load_case_results(const Problem& problem, const SolvedCase& result, bool show_solver) {
+Results load_case_results(const Problem& problem, const SolvedCase& result, bool show_solver,
+                          std::span<const SpringDependent> by_springs) {
   const Equilibrium& e = result.equilibrium;
   const Results solver = solver_results(problem, e);
   Results out = show_solver ? solver : solver.hidden();
@@ -127,6 +129,11 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
   add_stress(out, result);
   if (result.tension) out.append(tension_results(problem, *result.tension));
+  if (!by_springs.empty())
+    out.append(spring_effects(problem, by_springs,
+                              problem.tension
+                                  ? "changes of the moduli (plane stress)"
+                                  : "changes of mean displacements of groups and of the stress, over their sizes"));
   return out;
 }
 
@@ -188,17 +195,20 @@ Results tension_results(const Problem& problem, const TensionResult& t) {
   return out;
 }
 
-Results solve_results(const Problem& problem, Results out, std::span<const SolvedCase> results) {
+Results solve_results(const Problem& problem, Results out, std::span<const SolvedCase> results,
+                      std::span<const std::vector<SpringDependent>> by_springs) {
   const Case& resolved = problem.resolved;
   if (resolved.run || !resolved.schedules.empty()) {
     out.line("not used",
              "what belongs to a run: schedules (loads and supports act in full), gravity, walls, velocities, damping");
   }
-  if (results.size() == 1 && results.front().name.empty())
-    return out.append(load_case_results(problem, results.front(), true));
+  const auto of_case = [&](std::size_t k) {
+    return load_case_results(problem, results[k], k == 0,
+                             k < by_springs.size() ? by_springs[k] : std::span<const SpringDependent>{});
+  };
+  if (results.size() == 1 && results.front().name.empty()) return out.append(of_case(0));
   std::vector<Results> cases;
-  for (const SolvedCase& result : results)
-    cases.push_back(load_case_results(problem, result, &result == &results.front()));
+  for (std::size_t k = 0; k < results.size(); ++k) cases.push_back(of_case(k));
   return out.list("load_cases", std::move(cases));
 }
 
@@ -209,10 +219,46 @@ std::string suffix_of(const std::string& load_case) {
   return load_case.empty() ? "" : "_" + load_case;
 }
 
+struct SolveCommand : CommonOptions {
+  std::optional<double> accuracy;
+  bool sensitivities = false;
+};
+
 struct Solution {
   std::optional<Problem> problem = {};
   std::vector<SolvedCase> cases = {};
+  std::vector<std::vector<SpringDependent>> by_springs = {};  ///< of each case, where asked for
 };
+
+/// E and nu of the tension test, else displacements of loaded groups and the stress.
+/// \throws Error (bad_input) where the state is unstable or nothing is measured
+std::vector<SpringDependent> measured_by_springs(const Problem& problem, EquilibriumSolver& solver,
+                                                 const NamedLoads& loads, const Equilibrium& state) {
+  if (state.unstable_modes.value_or(0) > 0)
+    bad_input("derivatives are asked for, and the equilibrium is unstable", "it is no state of rest",
+              "Choose springs at which it is stable");
+  std::vector<SpringDependent> numbers;
+  const auto add = [&](MeasuredNumber& number, const std::string& key, const std::string& heading, const char* unit,
+                       const char* picture) {
+    numbers.push_back({std::move(static_cast<SpringDerivatives&>(number)), number.symbol, key, heading, unit,
+                       number.scale, false, picture});
+  };
+  if (problem.tension) {
+    auto measured = tension_derivatives(solver, state, *problem.resolved.test, *problem.tension);
+    add(measured[0], "young_modulus", "dE/E", "Pa", "dE/E by the springs of a contact; widest line ");
+    add(measured[1], "poisson_ratio", "dnu", "", "dnu by the springs of a contact, red: up, blue: down; widest line ");
+    return numbers;
+  }
+  for (MeasuredNumber& number : displacement_derivatives(solver, state, loads.loads))
+    add(number, "displacement/" + number.symbol, "d " + number.symbol, "m", "");
+  for (MeasuredNumber& number : stress_derivatives(solver, state))
+    add(number, "stress/" + number.symbol.substr(number.symbol.size() - 2), "d " + number.symbol, "Pa", "");
+  if (numbers.empty())
+    bad_input("derivatives are asked for, and nothing is measured",
+              "no load acts on a group that can move, and the stress is not known without cell areas",
+              "Load a group, with a force of 0 too, or give the discs cells");
+  return numbers;
+}
 
 void write_state_of(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
                     const SolvedCase& result) {
@@ -238,17 +284,27 @@ void write_state_of(const CommonOptions& options, const Problem& problem, const 
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
-std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Solution>& solution) {
+std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Solution>& solution,
+                                     bool sensitivities) {
   std::vector<OutputPart> parts{
       case_part([=]() -> const Case& { return solution->problem->resolved; }),
       assembly_part(resolved.output, [=]() -> const Assembly& { return solution->problem->assembly; })};
   for (std::size_t k = 0; k < resolved.load_cases.size(); ++k) {
     const auto write = [=](const CommonOptions& into) {
-      const auto& [problem, cases] = *solution;
+      const auto& [problem, cases, by_springs] = *solution;
       if (k < cases.size()) write_state_of(into, *problem, problem->load_cases[k].loads, cases[k]);
     };
     parts.push_back(
         {"the state", write, OutputPart::page, state_names(resolved.output, suffix_of(resolved.load_cases[k].name))});
+    if (!sensitivities) continue;
+    const auto write_table = [=](const CommonOptions& into) {
+      if (k < solution->by_springs.size())
+        write_sensitivities(into, *solution->problem, solution->by_springs[k], suffix_of(solution->cases[k].name));
+    };
+    const std::vector<std::string> pictures =
+        resolved.test ? std::vector<std::string>{"E", "nu"} : std::vector<std::string>{};
+    parts.push_back({sensitivities_name, write_table, OutputPart::page,
+                     files_of_sensitivities(resolved.output, pictures, suffix_of(resolved.load_cases[k].name))});
   }
   return parts;
 }
@@ -316,8 +372,9 @@ ReachedAccuracy reached_by_block(const CaseSearch& search) {
 }
 
 /// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
-bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& parts,
-                const std::shared_ptr<Solution>& solution, const std::optional<double>& accuracy, CaseSearch* search) {
+bool solve_once(const SolveCommand& options, const std::vector<OutputPart>& parts,
+                const std::shared_ptr<Solution>& solution, CaseSearch* search) {
+  const std::optional<double>& accuracy = options.accuracy;
   const Problem& problem = *solution->problem;
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
@@ -325,13 +382,17 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
   solver_options.solver.right_hand_sides = static_cast<int>(problem.load_cases.size());
   std::vector<SolvedCase>& results = solution->cases;
   results.clear();
+  std::vector<std::vector<SpringDependent>>& by_springs = solution->by_springs;
   Effects effects;
-  std::optional<Error> failure;
+  std::optional<Error> failure, refused;
   {  // the factorization is not needed beyond the load cases
     EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
     for (const NamedLoads& loads : problem.load_cases) {
       failure = failure_of([&] { results.push_back(solve_case(problem, solver, loads)); });
       if (failure && results.empty()) throw Error(*failure);
+      if (!failure && options.sensitivities && search == nullptr && by_springs.size() + 1 == results.size())
+        refused = failure_of(
+            [&] { by_springs.push_back(measured_by_springs(problem, solver, loads, results.back().equilibrium)); });
       if (!failure) continue;
       failure =
           failure->because(fmt::format("{} of {} load cases are done", results.size(), problem.load_cases.size()));
@@ -339,6 +400,7 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
     }
     effects = solver.effects();
   }
+  if (!failure) failure = refused;
   const StopsHeldBack held_back(failure);
 
   StageTimes times = problem.times;
@@ -357,57 +419,70 @@ bool solve_once(const CommonOptions& options, const std::vector<OutputPart>& par
     const Equilibrium& worst = std::ranges::max_element(results, {}, bound)->equilibrium;
     reached = solver_accuracy(*accuracy, worst.error_bound, worst.condition, times.total());
   }
-  Results all = solve_results(problem, problem_results(problem, effects), results);
+  Results all = solve_results(problem, problem_results(problem, effects), results, by_springs);
   if (reached) all.append(accuracy_results(*reached));
   deliver(options, status_of(results.front().equilibrium.unstable_modes), std::move(all), std::move(times), parts,
           failure);
   if (!arrays_wanted()) return true;
-  for (const SolvedCase& result : results) {
-    hand_over(state_arrays(result.name.empty() ? "" : result.name + "/",
-                           std::shared_ptr<const Equilibrium>(solution, &result.equilibrium)));
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const std::string prefix = results[k].name.empty() ? "" : results[k].name + "/";
+    hand_over(state_arrays(prefix, std::shared_ptr<const Equilibrium>(solution, &results[k].equilibrium)));
+    if (k < by_springs.size()) hand_over(sensitivity_arrays(by_springs[k], prefix));
   }
   hand_over(std::shared_ptr<const Assembly>(solution, &problem.assembly));
   return true;
 }
 
-void solve(const CommonOptions& options, const std::optional<double>& accuracy) {
+void solve(const SolveCommand& options) {
+  const std::optional<double>& accuracy = options.accuracy;
   Case resolved = read_case(options);
   const auto solution = std::make_shared<Solution>();
-  const std::vector<OutputPart> parts = output_parts(resolved, solution);
+  const std::vector<OutputPart> parts = output_parts(resolved, solution, options.sensitivities);
   expect_results(options, parts);
   const auto lock = lock_out(options);
   const auto build = [&](Case wanted) { solution->problem.emplace(prestressed(build_problem(std::move(wanted)))); };
   const bool searched = accuracy && resolved.test && resolved.assembly.arrangement != nullptr;
+  if (searched && options.sensitivities)
+    bad_input("--sensitivities is given beside the --accuracy of a lattice", "it is about the contacts of one block",
+              "Leave one of them out");
   if (searched && !options.dry_run) {
     CaseSearch search(options, searched_block(resolved, *accuracy));
     do {
       build(search.propose());
-    } while (!solve_once(options, parts, solution, accuracy, &search));
+    } while (!solve_once(options, parts, solution, &search));
     return;
   }
   build(std::move(resolved));
   if (!options.dry_run) {
-    solve_once(options, parts, solution, accuracy, nullptr);
+    solve_once(options, parts, solution, nullptr);
     return;
   }
   const Problem& problem = *solution->problem;
   Results further;
   if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
   const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
-  dry_run(options, problem, further, AssemblyKeys::all, {.bytes_of_picture = picture});
+  constexpr double of_stress = 3, of_group = 2;  // numbers with derivatives, at most
+  double numbers = 0;
+  for (const NamedLoads& each : problem.load_cases)
+    numbers += of_stress + of_group * static_cast<double>(each.loads.size());
+  dry_run(options, problem, further, AssemblyKeys::all,
+          {.bytes_of_disc = options.sensitivities ? bytes_of_sensitivities(problem, numbers) : 0,
+           .bytes_of_picture = picture});
 }
 
 }  // namespace
 
 Run declare_solve(CLI::App& command) {
-  const auto options = std::make_shared<CommonOptions>();
-  const auto accuracy = std::make_shared<std::optional<double>>();
+  const auto options = std::make_shared<SolveCommand>();
   add_common_options(command, *options);
   add_require_stable(command, *options);
   add_accuracy_option(
-      command, *accuracy,
+      command, options->accuracy,
       "tension test of a lattice: the size that tells nu to X;\nelse: fail unless the error is below X");
-  return [options, accuracy] { return solve(*options, *accuracy); };
+  command.add_flag("--sensitivities", options->sensitivities,
+                   "derivatives by the springs of each contact: of the moduli of a\ntension test, else of mean "
+                   "displacements of loaded groups and the\nstress; sensitivities.csv in --out");
+  return [options] { return solve(*options); };
 }
 
 }  // namespace equidem

@@ -23,6 +23,7 @@
 
 #include "command.hpp"
 #include "problem.hpp"
+#include "spring_effects.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 
@@ -499,6 +500,7 @@ std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey) {
 
 struct StabilityCommand : CommonOptions {
   int frequencies = StabilityOptions{}.natural_frequencies;
+  bool sensitivities = false;
 };
 
 /// The density of the discs, or 1.
@@ -508,7 +510,59 @@ StabilityOptions options_of(const Problem& problem, const StabilityCommand& comm
           .density = disc_density(resolved, problem.assembly).value_or(1),
           .body = resolved.assembly.body,
           .solver = resolved.solver,
-          .natural_frequencies = command.frequencies};
+          .natural_frequencies = command.frequencies,
+          .derivatives = command.sensitivities};
+}
+
+constexpr const char* lowest_frequency = "f1";
+
+/// Natural frequencies, speeds of sound along x and y and the critical kT/kN, those first that have derivatives.
+std::vector<SpringDependent> numbers_by_springs(const Stability& s) {
+  std::vector<SpringDependent> numbers;
+  constexpr double turn = 2 * std::numbers::pi;
+  for (std::size_t k = 0; k < s.natural.derivatives.size(); ++k) {
+    SpringDerivatives by = s.natural.derivatives[k];
+    for (std::vector<double>* each : {&by.by_kN, &by.by_kT, &by.by_kM})
+      for (double& value : *each) value /= turn;
+    numbers.push_back({std::move(by), fmt::format("f{}", k + 1), "natural_frequencies",
+                       fmt::format("df{0}/f{0}", k + 1), "Hz", signed_root(s.natural.squared[k]) / turn, true,
+                       k == 0 ? "df1/f1 by the springs of a contact; widest line " : ""});
+  }
+  for (const SoundDerivatives& sound : s.sound_derivatives) {
+    const std::string symbol = fmt::format("V{}_{}", sound.transverse ? "s" : "p", sound.angle == 0 ? "x" : "y");
+    numbers.push_back({sound, symbol, "sound_speeds/" + symbol, fmt::format("d{0}/{0}", symbol), "m/s", sound.speed});
+  }
+  if (!s.critical.by_kN.empty())
+    numbers.push_back({{s.critical.by_kN, {}, {}}, "critical_ratio", "critical_ratio", "d critical kT/kN", ""});
+  return numbers;
+}
+
+/// \throws Error (bad_input) where nothing has derivatives
+Results sensitivity_results(const Problem& problem, const Stability& s) {
+  const std::vector<SpringDependent> numbers = numbers_by_springs(s);
+  if (std::ranges::all_of(numbers, [](const SpringDependent& number) { return number.by_kN.empty(); }))
+    bad_input("derivatives are asked for, and no natural frequency, speed of sound or critical kT/kN has any",
+              numbers.empty() ? "of an unstable network, or without frequencies, nothing is found to differentiate"
+                              : "derivatives do not exist where frequencies coincide",
+              "Choose springs at which it is stable, or break the symmetry of the assembly");
+  Results out = spring_effects(problem, numbers, "changes of frequencies, speeds of sound and the critical kT/kN");
+  std::vector<std::string> alike;
+  double error = 0;
+  for (std::size_t k = 0; k < s.natural.derivatives.size(); ++k) {
+    const FrequencyDerivatives& of = s.natural.derivatives[k];
+    if (of.simple) error = std::max(error, of.error);
+    if (!of.simple) alike.push_back(fmt::format("f{}", k + 1));
+  }
+  if (alike.size() < s.natural.derivatives.size())
+    out.line("derivatives")
+        .add("sensitivities/frequency_error", "those of frequencies to about", error, "of f", {Shown::power, 1});
+  if (!alike.empty())
+    out.line("", fmt::format("none of {}: frequencies coincide, or are not told apart, and then have no derivatives",
+                             joined(alike)));
+  if (s.critical.sought && std::isfinite(s.critical.ratio) && s.critical.by_kN.empty())
+    out.line("", s.survey ? "none of the critical kT/kN: it is that of a wave of the infinite assembly"
+                          : "none of the critical kT/kN: not one motion alone loses its stiffness there");
+  return out;
 }
 
 /// Whether the contacts also carry what the loads and the motions of supports of the case cause: where prestress is
@@ -566,12 +620,21 @@ struct Judged {
   Stability stability = {};
 };
 
-std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Judged>& judged) {
+std::vector<OutputPart> output_parts(const Case& resolved, const std::shared_ptr<const Judged>& judged,
+                                     bool sensitivities) {
+  const std::vector<std::string> pictures{lowest_frequency};
   std::vector<std::string> waves{dispersion_table, ratio_table};
   for (const char* name : {dispersion_plot, ratio_plot}) std::ranges::move(plot_files(name), std::back_inserter(waves));
   return {case_part([=]() -> const Case& { return judged->problem->resolved; }),
           {"the waves", [=](const CommonOptions& into) { write_survey(into, *judged->problem, judged->stability); },
            OutputPart::page, waves},
+          {sensitivities_name,
+           [=](const CommonOptions& into) {
+             if (const auto numbers = numbers_by_springs(judged->stability); sensitivities && !numbers.empty())
+               write_sensitivities(into, *judged->problem, numbers);
+           },
+           OutputPart::page,
+           sensitivities ? files_of_sensitivities(resolved.output, pictures) : std::vector<std::string>{}},
           {"the mode", [=](const CommonOptions& into) { draw_mode(into, *judged->problem, judged->stability); },
            OutputPart::page, state_names(pictures_of(resolved.output), buckling_suffix)}};
 }
@@ -610,13 +673,15 @@ void dry_run_survey(const StabilityCommand& options, Problem given) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  dry_run(options, problem, results, AssemblyKeys::size, {.inertia = vectors_of_frequencies(options.frequencies)});
+  dry_run(options, problem, results, AssemblyKeys::size,
+          {.inertia = vectors_of_frequencies(options.frequencies),
+           .bytes_of_disc = options.sensitivities ? bytes_of_sensitivities(problem, 2 * options.frequencies) : 0});
 }
 
 void stability(const StabilityCommand& options) {
   Case resolved = read_case(options);
   const auto judged = std::make_shared<Judged>();
-  const std::vector<OutputPart> parts = output_parts(resolved, judged);
+  const std::vector<OutputPart> parts = output_parts(resolved, judged, options.sensitivities);
   expect_results(options, parts);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
@@ -627,10 +692,16 @@ void stability(const StabilityCommand& options) {
   const Stability& result = judged->stability = found_by<Stability>(failure, [&] {
     return analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options));
   });
+  Results results = stability_results(problem, result);
+  if (options.sensitivities) {
+    const std::optional<Error> none = failure_of([&] { results.append(sensitivity_results(problem, result)); });
+    if (!failure) failure = none;
+  }
   const StopsHeldBack held_back(failure);
   StageTimes times = problem.times;
   times.add(result.times);
-  deliver(options, result.status(), stability_results(problem, result), std::move(times), parts, failure);
+  deliver(options, result.status(), std::move(results), std::move(times), parts, failure);
+  if (arrays_wanted() && options.sensitivities) hand_over(sensitivity_arrays(numbers_by_springs(result)));
   if (arrays_wanted() && result.critical_load && !result.critical_load->motion.empty())
     hand_over(motion_arrays("buckling/", {judged, &result.critical_load->motion}));
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
@@ -651,6 +722,10 @@ Run declare_stability(CLI::App& command) {
       ->check(whole_number(0, 50))
       ->capture_default_str()
       ->type_name("N");
+  command.add_flag(
+      "--sensitivities", options->sensitivities,
+      "derivatives of frequencies, speeds of sound and the critical kT/kN\nby the springs of each contact: "
+      "sensitivities.csv in --out");
   return [options] { return stability(*options); };
 }
 
