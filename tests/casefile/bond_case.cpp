@@ -9,6 +9,7 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/file.hpp"
 
+#include "example.hpp"
 #include "support/catch.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
@@ -17,25 +18,7 @@ using namespace equidem;
 
 namespace {
 
-const std::string discs = R"(schema = "equidem/1"
-[grains]
-density = 1000.0
-[[grain]]
-position = [0.0, 0.0]
-radius = 0.1
-[[grain]]
-position = [0.2, 0.0]
-radius = 0.1
-[[grain]]
-position = [0.4, 0.0]
-radius = 0.1
-[collisions]
-restitution = 0.5
-stiffness = 1e5
-law = "linear_dashpot"
-[run]
-duration = 1.0
-)";
+const std::string discs = test::case_text("three_discs.toml");
 
 GrainCase parsed_bonds(const std::string& more, const std::vector<std::string>& overrides = {}) {
   return parse_grain_case(discs + more, "case.toml", ".", overrides);

@@ -23,69 +23,8 @@ using namespace equidem::test;
 
 namespace fs = std::filesystem;
 
-namespace {
-
-constexpr std::string_view wrong_grain_cases = R"(
-restitution = 0.8 => restitution = 1.2 | collisions.restitution | from 0 to 1
-restitution = 0.8 => restitution = 0.0 | collisions.restitution | infinite
-restitution = 0.8\n => | @[collisions] | collisions.restitution | rebound | damping
-restitution = 0.8 => restitution = 0.8\ndamping = 0.3 | collisions.damping | both given
-stiffness = 1.0e5 => shear_wave_speed = 150.0 | collisions.shear_wave_speed | without poisson_ratio
-stiffness = 1.0e5 => shear_wave_speed = 150.0\npoisson_ratio = 0.25 | @shear_wave_speed | collisions.shear_wave_speed
-  | body = "disc"
-friction = 0.3\n[c => friction = 0.3\nellipse_contact = "enlarged"\n[c | @ellipse_contact | collisions.ellipse_contact
-  | without ellipses
-friction = 0.3\n[c => friction = 0.3\nrolling_ratio = 0.3\n[c | @rolling_ratio | collisions.rolling_ratio
-  | without rolling_friction
-friction = 0.3\n[c => friction = 0.3\ncohesion_range = 1e-3\n[c | @cohesion_range | collisions.cohesion_range
-  | without cohesion
-radius = 0.01 => half_axes = [0.02, 0.01] | grain.half_axes | body = "disc"
-radius = 0.01 => radius = 0.01\ndiscs = [[0, 0, 1]] | grain.discs | both given
-radius = 0.01 => discs = [[0, 0]] | grain.discs | 3 of them
-radius = 0.01 => discs = [[0, 0, -1.0]] | grain.discs | > 0
-radius = 0.01 => discs = [0, 0, 1] | grain.discs | [[0.0, 0.0, 0.01]
-radius = 0.01\n => | @[[grain]] | grain | half_axes | discs
-restitution = 0.8 => restituton = 0.8 | collisions.restituton | restitution
-stiffness = 1.0e5\n => | @[collisions] | collisions.stiffness | contact_duration | largest_overlap
-stiffness = 1.0e5 => stiffness = 1.0e5\ncontact_duration = 1e-3 | collisions.contact_duration | both given
-stiffness = 1.0e5 => largest_overlap = 1e-4 | collisions.largest_overlap | closing_speed
-law = "linear_dashpot" => law = "P" | collisions.law | Write law = "energy_map"
-law = "linear_dashpot" => law = "energy_map" | @integrator | run.integrator | step of its own
-stiffness = 1.0e5 => young_modulus = 1e9 | collisions.young_modulus | hertz_dashpot
-friction = 0.3 => friction = 0.3\ncohesion = 1.0 | collisions.cohesion | cohesion_range
-friction = 0.3 => friction = -0.3 | collisions.friction | >= 0
-with = "floor" => with = "flor" | collisions.pair.with | Did you mean "floor"
-group = "steel"\nwith => group = "floor"\nwith | @group = "floor" | collisions.pair.group | no group of grains
-normal = [0.0, 2.0] => normal = [0.0, 0.0] | wall.normal | zero
-end = [-1.0, 1.0] => end = [-1.0, 0.0] | wall.end | length
-normal = [0.0, 2.0] => normal = [0.0, 2.0]\nend = [1.0, 0.0] | wall.end | segment
-direction = [3.0, 4.0]\n => | @displacement | wall.displacement | direction
-schedule = "shake" => schedule = "shaek" | wall.schedule | "shake"
-density = 2500.0\n => | grain.density | [grains]
-radius = 0.01 => radius = 0.0 | grain.radius | > 0
-position = [0.5, 0.1] => position = [0.5] | grain.position | two numbers
-time_step = 1.0e-5 => time_step = 0.1 | run.time_step | limit of stability | exact_flow
-time_step = 1.0e-5 => time_step = 1.0 | run.time_step | longer than the run
-time_step = 1.0e-5 => time_step = 1.0e-5\nsteps_per_contact = 20 | run.steps_per_contact | both given
-duration = 0.5\n => | @[run] | run.duration | missing key
-group = "grains"\nq => group = "gravel"\nq | @group = "gravel" | probe.group | no grains
-group = "grains"\nq => bodies = [3]\nq | @bodies = [3] | probe.bodies | 0 to 2
-group = "grains"\nq => group = "grains"\nbox = [0.0, 1.0, 1.0, 0.5]\nq | @box | probe.box | is empty
-"velocity", "spin" => "stress" | probe.quantities | and no box | Add box
-quantities = ["velocity", "spin"] => box = [0.0, 0.0, 1.0, 1.0]\nquantities = ["stress"] | probe.quantities
-  | of spheres
-integrator =  => scheme = | run.scheme | earlier version | Write integrator
-group = "grains"\nq => grains = [0]\nq | @grains = [0] | probe.grains | Write bodies
-schedule = "shake"\n => | @displacement | wall.displacement | without schedule | its point
-name = "floor" => name = "steel" | wall.name | both called
-[collisions.walls] => [collisions.wall] | collisions.wall | collisions
-probe_interval = 0.01 => vtk = true | output.vtk | earlier version | files
-)";
-
-}  // namespace
-
 TEST_CASE("a_wrong_case_of_grains_is_refused_with_line_key_and_remedy") {
-  check_wrong(grain_case, wrong_grain_cases, sentence_of);
+  check_wrong(grain_case, case_text("grains.wrong.txt"), sentence_of);
 }
 
 TEST_CASE("an_automatic_step_that_cannot_be_known_is_asked_for") {
@@ -219,27 +158,7 @@ TEST_CASE("columns_in_other_units_and_groups_that_mean_walls_are_refused") {
 
 namespace {
 
-const std::string box = R"(schema = "equidem/1"
-[grains]
-density = 2500.0
-[[grain]]
-position = [0.5, 0.1]
-radius = 0.1
-[collisions]
-restitution = 0.8
-contact_duration = 1.0e-3
-[[wall]]
-name = "floor"
-point = [0.0, 0.0]
-normal = [0.0, 1.0]
-[[wall]]
-name = "left"
-point = [0.0, 0.0]
-normal = [1.0, 0.0]
-[run]
-duration = 2.0
-gravity = [0.0, -9.8]
-)";
+const std::string box = case_text("box_to_shake.toml");
 
 std::string shaking(const std::string& keys) {
   return box + "[shaking]\n" + keys;

@@ -183,35 +183,7 @@ TEST_CASE("defaults_of_cases_of_grains_are_those_of_the_options") {
 
 namespace {
 
-const std::string soil = R"(schema = "equidem/1"
-[grains]
-density = 2480.0
-[[grain]]
-position = [0.0, 0.02]
-radius = 0.01
-[[grain]]
-position = [0.1, 0.03]
-half_axes = [0.02, 0.01]
-angle = 0.5
-[[grain]]
-position = [0.2, 0.05]
-discs = [[1.0, 2.0, 0.01], [1.015, 2.0, 0.01]]
-[collisions]
-law = "linear_dashpot"
-shear_wave_speed = 150.0
-poisson_ratio = 0.25
-damping = 0.3
-friction = 0.17
-[collisions.walls]
-friction = 0.25
-[[wall]]
-name = "floor"
-point = [0.0, 0.0]
-normal = [0.0, 1.0]
-[run]
-duration = 0.1
-integrator = "velocity_verlet"
-)";
+const std::string soil = case_text("soil.toml");
 
 std::string refused(const std::string& text) {
   return test::refusal_of([&] { parse_grain_case(text, "soil.toml", {}); }).message;

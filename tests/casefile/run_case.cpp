@@ -170,77 +170,9 @@ TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
   CHECK(missing.starts_with(place_of(text, "path = \"own") + ": schedule.path: cannot read"));
 }
 
-namespace {
-
-constexpr std::string_view wrong_runs = R"(
-# how long, in which steps
-duration = 0.25 => duration = 0.0 | run.duration | 0.0 is out of range | > 0
-duration = 0.25 => duration = -1 | run.duration | -1 is out of range
-duration = 0.25 => duration = inf | run.duration | not a finite number
-duration = 0.25\n => | @[run] | run | neither duration nor until_rest
-duration = 0.25 => duration = 0.25\nuntil_rest = 1e-10 | run.until_rest | both given
-duration = 0.25 => until_rest = 1.0 | run.until_rest | between 0 and 1
-time_step = 2e-6 => time_step = 0 | run.time_step | 0 is out of range | "auto"
-time_step = 2e-6 => time_step = -2e-6 | run.time_step | out of range
-time_step = 2e-6 => time_step = "automatic" | run.time_step | "automatic" is text
-time_step = 2e-6 => time_step = 1 | run.time_step | longer than the run of 0.25 s
-step_fraction = 0.5 => step_fraction = 1.5 | run.step_fraction | 1.5 is out of range
-step_fraction = 0.5 => step_fraction = 0 | run.step_fraction | 0 is out of range
-# how
-"velocity_verlet" => "verlet" | run.integrator | no known integrator | "leapfrog"
-"velocity_verlet" => "leap_frog" | run.integrator | Did you mean "leapfrog"?
-"bound" => "bounds" | run.step_rule | Did you mean "bound"?
-motion = "finite" => motion = "large" | run.motion | "small", "finite"
-[0.0, -9.81] => -9.81 | run.gravity | two numbers [x, y]
-mass = 3.0 => masses = 3.0 | run.damping.masses | unknown key | 'mass'
-mass = 3.0 => viscous = 3.0 | run.damping.viscous | unknown key | Known here: mass
-mass = 3.0 => mass = -3.0 | run.damping.mass | -3.0 is out of range
-mass = 3.0 => stiffness = 3.0 | @contact = 0.1 | run.damping.contact | stiffness and contact are both
-local = 0.2 => local = 1.0 | run.damping.local | < 1
-[run.damping] => [run.dampling] | run.dampling | unknown table | 'damping'
-# schedules
-end = 0.1 => end = 0.01 | schedule.end | ends at 0.01 s and starts at 0.02 s
-end = 0.1\n => | @[[schedule]] | schedule.end | missing key
-end = 0.1 => end = 0.1\nfrequency = 1.0 | schedule.frequency | does not apply to kind = "ramp"
-frequency = 10.0 => frequency = 0.0 | schedule.frequency | out of range
-kind = "ramp" => kind = "step" | schedule.kind | no known kind | "ramp"
-times = [0.0, 0.2] => times = [0.2, 0.0] | schedule.times | 0 s comes after 0.2 s
-times = [0.0, 0.2] => times = [0.0] | schedule.times | 1 time and 2 values
-times = [0.0, 0.2] => times = [] | schedule.times | empty
-times = [0.0, 0.2] => times = [0.0, inf] | schedule.times | not a finite number
-times = [0.0, 0.2]\n => | @[[schedule]]\nname = "pull" | schedule | neither times nor path | a file
-times = [0.0, 0.2]\n => times = [0.0, 0.2]\npath = "a.csv"\n | schedule.path | times and path are both given
-name = "shake" => name = "open" | schedule.name | two schedules 'open'
-name = "shake" => name = "" | schedule.name | empty
-schedule = "open" => schedule = "opne" | support.schedule | Did you mean "open"?
-schedule = "pull" => schedule = "push" | load.schedule | there is no schedule "push"
-schedule = "shake" => schedule = "x" | wall.schedule | there is no schedule "x"
-# walls, velocities, probes
-normal = [2.0, 0.0] => normal = [0.0, 0.0] | wall.normal | is zero
-kN = 2.0e9 => kN = 0.0 | wall.kN | out of range | > 0
-displacement = 2e-4\n => | wall.schedule | without displacement
-name = "right" => name = "left" | wall.name | two walls 'left'
-displacement = 2e-4\nschedule = "shake"\n => displacement = 2e-4\n | wall.displacement | without schedule | its point
-displacement = 2e-4\nschedule = "shake"\n => direction = [1.0, 0.0]\n | wall.direction | without displacement
-"rotation"] => "rotations"] | probe.quantities | none of the quantities | Did you mean "rotation"?
-"rotation"] => "energy"] | probe.quantities | in every history | Remove it
-group = "right"\nquantities => quantities | @[[probe]] | probe | whose history | Give one
-group = "right"\nquantities => group = "right"\nbodies = [1]\nquantities | @bodies | probe.bodies | both given
-"rotation"] => "velocity"] | probe.quantities | "velocity" is there twice
-["velocity", "rotation"] => [] | probe.quantities | empty
-["velocity", "rotation"] => "spin" | probe.quantities | "spin" is text
-name = "tip" => name = "../tip" | probe.name | cannot name a probe
-frame_interval = 0.05 => frame_interval = 0.0 | output.frame_interval | out of range
-# contradictions
-moment = 2.0 => moment = 2.0\ncase = "a"\n[[load]]\ngroup = "top"\nmoment = 1.0\ncase = "b" | load.case | 'a' and 'b'
-  | one motion
-)";
-
-}  // namespace
-
 TEST_CASE("runs_that_cannot_be_meant_are_refused_with_line_and_key") {
   REQUIRE(error_of(motion_case).empty());
-  check_wrong(motion_case, wrong_runs, error_of);
+  check_wrong(motion_case, case_text("motion.wrong.txt"), error_of);
 }
 
 TEST_CASE("what_acts_in_a_run_alone_is_not_passed_over_without_one") {

@@ -14,9 +14,11 @@
 #include "equidem/core/random.hpp"
 #include "equidem/geometry/shape_contact.hpp"
 
+#include "support/assemblies.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
 
@@ -313,4 +315,20 @@ TEST_CASE("prestress_is_chosen_by_its_size_and_refused_where_it_is_not_known") {
   cell.contacts.push_back({.i = 1, .j = 0, .shift_x = 1, .lever_i = 1, .lever_j = 1});
   cell.contact_normal_force = {-100, -100}, cell.contact_tangential_force = {0, 0};
   CHECK(choose_prestress(cell, stiff, on)->springs.prestressed());
+}
+
+TEST_CASE("a_force_that_is_round_off_of_the_others_loads_no_contact") {
+  Assembly chain = chain_of_discs(4, 1);
+  chain.contact_normal_force = {-2, -1, 1e-15};
+  chain.contact_tangential_force = {0, 0, -3e-16};
+  for (const double scale : {1.0, 1e-9, 1e12}) {
+    Assembly scaled = chain;
+    for (double& force : scaled.contact_normal_force) force *= scale;
+    for (double& force : scaled.contact_tangential_force) force *= scale;
+    const RestBalance balance = balance_at_rest(scaled);
+    CAPTURE(scale, balance.loaded, balance.mean_force, balance.relative);
+    CHECK(balance.loaded == 2);
+    CHECK(balance.mean_force == Approx(1.5 * scale));
+    CHECK(balance.relative == Approx(2 / 1.5));
+  }
 }

@@ -72,8 +72,8 @@ TEST_CASE("a_needle_rests_on_two_pegs_by_its_tip_and_its_side") {
   HardCase table(needles);
   const auto peg = [](std::string name, double x) { return segment(std::move(name), {x, -1}, {x, 0.05}); };
   const double stiffness = 1e4;
-  PairProperties pair{.stiffness = stiffness, .restitution = 0.1, .friction = 0.5, .tangential_ratio = 0.5};
-  pair.tangential_damping = 0.5;
+  PairProperties pair{
+      .stiffness = stiffness, .restitution = 0.1, .friction = 0.5, .tangential_ratio = 0.5, .tangential_damping = 0.5};
   double lack = 0, off = 0;
   for (const double x : {-0.1, -0.5, -0.98}) {
     const GrainScene scene = scene_of({oval({0, 0.12}, 1, 0.05)}, {peg("left", x), peg("right", 0.6)}, pair, {0, -1});
