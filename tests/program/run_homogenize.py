@@ -148,6 +148,9 @@ class Rigidity(HomogenizeTest):
         out = self.folder / "out"
         whole, loose = self.homogenize(self.braced_square(False)), self.homogenize(self.braced_square(True), "--out", out)
         self.check_close(loose["stiffness"], whole["stiffness"], 1e-12)
+        whole_shift, loose_shift = (self.homogenize(self.braced_square(hang), "--sensitivities", "--second-order", 4)
+                                    ["sensitivities"]["mean_shift"] for hang in (False, True))
+        self.check_close([list(loose_shift.values())], [list(whole_shift.values())], 1e-9)
         self.assertEqual([(one["rattlers"], one["discs_removed"]) for one in (whole, loose)], [(0, 0), (1, 2)])
         self.assertIn("disc 16", loose["left_out_parts"][0])
         self.assertEqual(loose["self_stresses"], whole["self_stresses"])

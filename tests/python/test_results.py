@@ -89,6 +89,22 @@ def test_a_frequency_changes_with_one_spring_as_its_derivative_says():
     assert "dnatural_frequencies_dkT" not in lowest(kT)
 
 
+def test_displacements_and_moduli_have_the_derivatives_of_their_factor():
+    loads = [{"group": "right", "force": (1, 0), "case": "pull"}, {"group": "right", "force": (0, 1), "case": "lift"}]
+    result = eq.solve(BLOCK, SPRINGS, supports=HELD, loads=loads, sensitivities=True)
+    right = BLOCK.groups["right"]
+    forces, weights = np.zeros((len(BLOCK), 2)), np.zeros((len(BLOCK), 2))
+    forces[right, 1], weights[right, 1] = 1, 1 / len(right)
+    expected = eq.factorize(BLOCK, SPRINGS, HELD).derivatives(forces, motions=weights)
+    for by in ("kN", "kT"):
+        found = result.lift[f"dright_uy_d{by}"]
+        assert np.abs(found - expected[f"by_{by}"]).max() <= 1e-9 * np.abs(found).max()
+    assert result.pull.units["dright_ux_dkN"] == "m/Pa" and "dE_dkN" not in result.pull
+    test = eq.tension_test(BLOCK, SPRINGS, sensitivities=True)
+    whole = 1e9 * test.dE_dkN.sum() + 0.5e9 * test.dE_dkT.sum()
+    assert abs(whole - test.plane_stress.young_modulus) <= 1e-9 * whole
+
+
 def test_load_cases_have_their_own_arrays():
     result = eq.solve(BLOCK, SPRINGS, supports=HELD, loads=[{"group": "right", "force": (1, 0), "case": "pull"},
                                                             {"group": "right", "force": (0, 1), "case": "lift"}])

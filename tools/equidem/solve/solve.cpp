@@ -385,14 +385,18 @@ bool solve_once(const SolveCommand& options, const std::vector<OutputPart>& part
   std::vector<std::vector<SpringDependent>>& by_springs = solution->by_springs;
   Effects effects;
   std::optional<Error> failure, refused;
-  {  // the factorization is not needed beyond the load cases
+  double of_derivatives = 0;  // s
+  {                           // the factorization is not needed beyond the load cases
     EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
     for (const NamedLoads& loads : problem.load_cases) {
       failure = failure_of([&] { results.push_back(solve_case(problem, solver, loads)); });
       if (failure && results.empty()) throw Error(*failure);
-      if (!failure && options.sensitivities && search == nullptr && by_springs.size() + 1 == results.size())
+      if (!failure && options.sensitivities && search == nullptr && by_springs.size() + 1 == results.size()) {
+        const Stopwatch watch;
         refused = failure_of(
             [&] { by_springs.push_back(measured_by_springs(problem, solver, loads, results.back().equilibrium)); });
+        of_derivatives += watch.seconds();
+      }
       if (!failure) continue;
       failure =
           failure->because(fmt::format("{} of {} load cases are done", results.size(), problem.load_cases.size()));
@@ -410,6 +414,7 @@ bool solve_once(const SolveCommand& options, const std::vector<OutputPart>& part
       if (first || stage == "solve" || stage == "refine") times.add(stage, seconds);
     }
   }
+  if (options.sensitivities) times.add("sensitivities", of_derivatives);
   std::optional<ReachedAccuracy> reached;
   if (search != nullptr) {
     if (!search->accepts(searched_values(*results.front().tension), times.total())) return false;
