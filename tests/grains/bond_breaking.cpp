@@ -61,42 +61,6 @@ TEST_CASE("a_bond_breaks_by_tension_with_bending_or_by_shear_with_friction") {
   CHECK_FALSE(break_of(k, 0, {-1, 0}, 0, 0, 6, 0.5));
 }
 
-<<<<<<< ours
-TEST_CASE("a_bond_breaks_at_its_strength_and_its_discs_go_on_with_the_rest_of_their_energy") {
-  // At f_t where the pair parts, 6 |M|/w = f_t where its discs spin against each other, |T| = f_s where they spin
-  // alike: no other spring has been stretched to first order.
-  struct Broken {
-    BreakMode mode;
-    double speed, spin_i, spin_j, strength, step;
-    double energy;             ///< stored where it breaks
-    double of_energy, of_all;  ///< relative errors
-  };
-=======
-TEST_CASE("a_pair_that_parts_breaks_at_its_strength_and_flies_on_with_the_rest_of_its_energy") {
-  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
-  const double speed = 0.2, strength = 2, omega = std::sqrt(2 * bond_kN);  // of the reduced mass 1/2
-  GrainScene scene = breaking_pair(stepping.law, strength, never);
-  scene.grains[0].velocity = {-speed / 2, 0};
-  scene.grains[1].velocity = {speed / 2, 0};
-  const double step = 1e-4 / omega, time = std::asin(strength * omega / (bond_kN * speed)) / omega;
-  GrainSimulation simulation(scene, options_of(stepping, step));
-  const std::vector<BondBreak> breaks = run_to_break(simulation, 40000);
-  REQUIRE(breaks.size() == 1);
-  const double energy = strength * strength / (2 * bond_kN);
-  CAPTURE(stepping.name(), breaks[0].step * step, time, breaks[0].energy, energy);
-  CHECK(breaks[0].mode == BreakMode::tension);
-  CHECK(std::abs(static_cast<double>(breaks[0].step) * step - time) < 3 * step);
-  CHECK(breaks[0].energy == Approx(energy).epsilon(1e-3));
-  CHECK(norm(breaks[0].place) < 1e-12);
-  simulation.advance(1000);
-  const EnergyLedger ledger = simulation.energy();
-  const double initial = 0.25 * speed * speed;
-  CHECK(ledger.kinetic == Approx(initial - energy).epsilon(1e-3));
-  CHECK(ledger.lost_breaking == Approx(energy).epsilon(1e-3));
-  CHECK(std::abs(ledger.error()) < 2e-4 * initial);
-  CHECK(ledger.elastic() == 0);
-}
-
 TEST_CASE("a_contact_beside_a_bond_shares_its_compression_and_none_of_its_tension") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double speed = 0.2, strength = 2, initial = 0.25 * speed * speed;  // of the reduced mass 1/2
@@ -136,8 +100,15 @@ TEST_CASE("a_contact_beside_a_bond_shares_its_compression_and_none_of_its_tensio
   CHECK(std::abs(ledger.error()) < 1e-3 * initial);
 }
 
-TEST_CASE("opposite_spins_break_a_bond_in_bending_and_equal_ones_in_shear") {
->>>>>>> theirs
+TEST_CASE("a_bond_breaks_at_its_strength_and_its_discs_go_on_with_the_rest_of_their_energy") {
+  // At f_t where the pair parts, 6 |M|/w = f_t where its discs spin against each other, |T| = f_s where they spin
+  // alike: no other spring has been stretched to first order.
+  struct Broken {
+    BreakMode mode;
+    double speed, spin_i, spin_j, strength, step;
+    double energy;             ///< stored where it breaks
+    double of_energy, of_all;  ///< relative errors
+  };
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double width = std::sqrt(12 * bond_kM / bond_kN), omega = std::sqrt(2 * bond_kN);  // of the reduced mass 1/2
   const double moment = 0.5 * width / 6, fine = 1e-4 / omega;

@@ -94,21 +94,13 @@ TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_a
 
 TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
-<<<<<<< ours
-  CAPTURE(stepping.name());
-  GrainScene scene = still(busy_box(stepping.law, 4, 3, 5));
-  scene.bonds = {{.i = 0, .j = 1, .normal_spring = 300, .tangential_spring = 100, .bending_spring = 5}};
-  scene.strengths = ContactStrengths{{14}, {9}, 0.2};
-=======
   const bool at_start = GENERATE(true, false);  // bonds there are before the stage that makes others
   const AfterBreaking after = GENERATE(AfterBreaking::frictional, AfterBreaking::parallel);
-  CAPTURE(stepping.name(), at_start, after);
-  GrainScene scene = busy_box(stepping.law, 4, 3, 5);
-  for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+  CAPTURE(stepping.name(), at_start, to_string(after));
+  GrainScene scene = still(busy_box(stepping.law, 4, 3, 5));
   const GrainBond like{.i = 0, .j = 1, .normal_spring = 300, .tangential_spring = 100, .bending_spring = 5};
   if (at_start) scene.bonds = {like};
   if (at_start) scene.strengths = ContactStrengths{{14}, {9}, 0.2, after == AfterBreaking::parallel};
->>>>>>> theirs
   GrainStage first{.name = "thrown", .scene = scene, .steps = 60};
   GrainStage tied = first, open = first;
   tied.name = "tied";
