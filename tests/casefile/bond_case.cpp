@@ -156,10 +156,19 @@ TEST_CASE("the_strength_file_of_a_calibration_gives_bonds_the_strengths_of_its_t
   CHECK(
       parse_grain_case(to_toml(by_file.document, folder.path()), "echo.toml", folder.path()).scene.strengths->tension ==
       by_table.scene.strengths->tension);
-  // Broken bonds of bodies that collide always slide with friction: the key is none of theirs.
+  // Bodies that collide touch once their bond has broken: it is never gone alone.
   write_file(folder / "cs.toml",
              "schema = \"equidem-strength/1\"\n[strength]\ntension = 1.0\nshear = 1.0\n"
              "after_breaking = \"gone\"\n",
              true);
   test::check_refused([&] { read(discs + bonds, "strength = \"cs.toml\"\n"); }, {"cs.toml:5", "after_breaking"});
+}
+
+TEST_CASE("the_contact_of_bodies_that_collide_acts_beside_their_bond_where_the_strength_states_it") {
+  const std::string bonds = "[[bond]]\ngrains = [0, 1]\nnormal_spring = 1.0\n[strength]\ntension = 1.0\nshear = 1.0\n";
+  CHECK(parsed_bonds(bonds + "after_breaking = \"parallel\"\n").scene.strengths->beside_contact);
+  CHECK_FALSE(parsed_bonds(bonds + "after_breaking = \"frictional\"\n").scene.strengths->beside_contact);
+  CHECK_FALSE(parsed_bonds(bonds).scene.strengths->beside_contact);
+  CHECK_THROWS_WITH(parsed_bonds(bonds + "after_breaking = \"gone\"\n"),
+                    Catch::Contains("after_breaking") && Catch::Contains("parallel"));
 }

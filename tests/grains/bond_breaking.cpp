@@ -86,6 +86,45 @@ TEST_CASE("a_pair_that_parts_breaks_at_its_strength_and_flies_on_with_the_rest_o
   CHECK(ledger.elastic() == 0);
 }
 
+TEST_CASE("a_contact_beside_a_bond_shares_its_compression_and_none_of_its_tension") {
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
+  const double speed = 0.2, strength = 2, initial = 0.25 * speed * speed;  // of the reduced mass 1/2
+  GrainScene scene = breaking_pair(stepping.law, strength, never);
+  scene.strengths->beside_contact = true;
+  scene.pairs[0].stiffness *= 40;
+  scene.grains[0].velocity = {speed / 2, 0};
+  scene.grains[1].velocity = {-speed / 2, 0};
+  const auto stored = [&](double overlap) {
+    return bond_kN * overlap * overlap / 2 + describe(stepping.law).energy(scene.pairs[0].stiffness, overlap);
+  };
+  double expected = 0, too_large = 1;
+  for (int halvings = 0; halvings < 60; ++halvings) {
+    const double middle = (expected + too_large) / 2;
+    (stored(middle) < initial ? expected : too_large) = middle;
+  }
+  const double bond_alone = std::sqrt(2 * initial / bond_kN);
+  GrainSimulation simulation(scene, options_of(stepping, 1e-4 / std::sqrt(2 * bond_kN)));
+  double overlap = 0;
+  while (simulation.breaks().empty() && simulation.step() < 60000) {
+    simulation.advance(1);
+    const std::vector<Grain> grains = simulation.grains();
+    overlap = std::max(overlap, 1 - norm(grains[1].position - grains[0].position));
+  }
+  REQUIRE(simulation.breaks().size() == 1);
+  const double energy = strength * strength / (2 * bond_kN);
+  CAPTURE(stepping.name(), overlap, expected, bond_alone, simulation.breaks()[0].energy, energy);
+  CHECK(expected < 0.95 * bond_alone);
+  CHECK(overlap == Approx(expected).epsilon(1e-3));
+  CHECK(simulation.breaks()[0].mode == BreakMode::tension);
+  CHECK(simulation.breaks()[0].energy == Approx(energy).epsilon(1e-3));
+  simulation.advance(1000);
+  const EnergyLedger ledger = simulation.energy();
+  CAPTURE(ledger.kinetic, ledger.lost_breaking, ledger.error());
+  CHECK(ledger.kinetic == Approx(initial - energy).epsilon(2e-3));
+  CHECK(ledger.lost_breaking == Approx(energy).epsilon(1e-3));
+  CHECK(std::abs(ledger.error()) < 1e-3 * initial);
+}
+
 TEST_CASE("opposite_spins_break_a_bond_in_bending_and_equal_ones_in_shear") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double spin = 0.3, width = std::sqrt(12 * bond_kM / bond_kN), step = 1e-5;
@@ -160,6 +199,7 @@ TEST_CASE("the_energy_of_a_chain_that_breaks_and_collides_balances_to_the_error_
   like.tangential_spring = 40;
   like.bending_spring = 1;
   const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
+  const bool beside = GENERATE(false, true);
   std::vector<double> errors;
   for (const double step : {1e-3, 2.5e-4}) {
     GrainScene scene = chain_scene(stepping.law, 20, like);
@@ -167,10 +207,12 @@ TEST_CASE("the_energy_of_a_chain_that_breaks_and_collides_balances_to_the_error_
     scene.pairs[0].friction = 0.4;
     scene.pairs[0].tangential_ratio = 0.5;
     scene.strengths = bond_strengths(scene, {.tension = 3.0, .shear = 2.0, .weibull_modulus = 4.0});
+    scene.strengths->beside_contact = beside;
     GrainSimulation simulation(scene, options_of(stepping, step));
     simulation.advance(static_cast<std::int64_t>(std::llround(2 / step)));
     const EnergyLedger ledger = simulation.energy();
-    CAPTURE(stepping.name(), step, simulation.breaks().size(), ledger.lost_breaking, ledger.error(), ledger.initial);
+    CAPTURE(stepping.name(), beside, step, simulation.breaks().size(), ledger.lost_breaking, ledger.error(),
+            ledger.initial);
     CHECK(simulation.breaks().size() > 4);
     errors.push_back(std::abs(ledger.error()) / ledger.initial);
   }

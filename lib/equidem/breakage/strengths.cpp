@@ -85,6 +85,7 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
   check_options(options);
   ContactStrengths result;
   result.friction = options.friction;
+  result.beside_contact = options.after_breaking == AfterBreaking::parallel;
   const bool own = !assembly.contact_tension.empty(), given = options.tension || options.shear;
   if (own && given) {
     bad_input("the case gives strengths, and so does the assembly", "one of the two would not count",

@@ -34,13 +34,15 @@ struct EnumNames<BondLength> {
 enum class AfterBreaking {
   gone,        ///< it carries nothing
   frictional,  ///< it opens, closes, sticks and slips
+  parallel,    ///< of bodies that collide: so it does beside the bond too, from the start
 };
 
 template <>
 struct EnumNames<AfterBreaking> {
   using enum AfterBreaking;
   static constexpr const char* what = "behaviour of broken contacts";
-  static constexpr NamedValue<AfterBreaking> list[] = {{gone, "gone"}, {frictional, "frictional"}};
+  static constexpr NamedValue<AfterBreaking> list[] = {
+      {gone, "gone"}, {frictional, "frictional"}, {parallel, "parallel"}};
 };
 
 /// Strengths of the contacts of two groups.
@@ -70,6 +72,7 @@ struct ContactStrengths {
   std::vector<double> tension;  ///< N/m, per contact
   std::vector<double> shear;    ///< N/m, per contact
   double friction = 0;
+  bool beside_contact = false;  ///< bodies that collide: bonded discs touch as others do, and go on when it has broken
 };
 
 /// Strengths of the assembly itself, where it has some, are taken as they are.

@@ -139,7 +139,9 @@ std::vector<Key<StrengthOptions>> strength_keys(CaseKind kind) {
   using S = StrengthOptions;
   const auto of_assemblies = only_in({CaseKind::assembly});
   std::vector<std::string> lengths = names_of<BondLength>();
-  if (kind == CaseKind::colliding) std::erase(lengths, to_string(BondLength::facet));
+  std::vector<std::string> after{"gone", "frictional"};
+  const bool collide = kind == CaseKind::colliding;
+  if (collide) std::erase(lengths, to_string(BondLength::facet)), after = {"frictional", "parallel"};
   return {key("tension", &S::tension, unit(unit_of_strength), not_negative, strengths_of_contact),
           key("shear", &S::shear, unit(unit_of_strength), not_negative, strengths_of_contact),
           key("friction", &S::friction, not_negative, "by how much compression adds to the strength in shear"),
@@ -150,9 +152,14 @@ std::vector<Key<StrengthOptions>> strength_keys(CaseKind kind) {
               "m: a share exp(-x^m) of the contacts is more than x times as strong as given; left out: all are "
               "equal"),
           key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths"),
-          key("after_breaking", &S::after_breaking, of_assemblies,
+          key(
+              "after_breaking", &S::after_breaking, choices(after),
+              [&](KeySpec& key) {
+                if (collide) optional(key);
+              },
               "gone: a broken contact carries nothing; frictional: it opens, closes, sticks and slips. Contacts whose "
-              "strengths are both 0 are then no bonds from the start"),
+              "strengths are both 0 are then no bonds from the start. Colliding bodies: frictional (default): discs "
+              "touch once their bond has broken; parallel: from the start, beside the bond"),
           key("residual_friction", &S::residual_friction, of_assemblies, not_negative,
               when("after_breaking", {"frictional"}),
               "coefficient of friction of contacts without a bond, where they are frictional; left out: friction")};

@@ -213,6 +213,7 @@ struct BondList {
   PackedBonds packed;
   bool breakable = false;         ///< bonds have strengths
   double friction = 0;            ///< of the strengths
+  bool beside_contact = false;    ///< likewise: bonded discs touch as others do
   std::vector<BondBreak> breaks;  ///< in the order of time
 
   /// The bonds that have not broken.

@@ -173,6 +173,7 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
   system.bonds.held = tied.size();
   system.bonds.breakable = scene.strengths.has_value();
   if (scene.strengths) system.bonds.friction = scene.strengths->friction;
+  if (scene.strengths) system.bonds.beside_contact = scene.strengths->beside_contact;
   if (!system.cell.active) return;
   for (TiedPair& bond : tied) bond.image = image_inside(system.cell.now, {}, branch_of(system, bond));
 }
@@ -316,7 +317,7 @@ Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
   return system.bodies.motions[bond.i].position + bond.share * branch_of(system, bond);
 }
 
-/// The bodies of a bond as a contact that begins now.
+/// The bodies of a bond as a contact that begins now; one beside the bond is there before, and nothing begins.
 struct NewContact {
   double stiffness = 0, overlap = 0;
   double attraction = 0;  ///< N
@@ -415,7 +416,7 @@ bool break_bonds(GrainSystem& system) {
     if (!mode) continue;
     const double energy = bond_energy(bond.springs, motion);
     bonds.breaks.push_back({system.step, bond.number, *mode, place_of(system, bond), energy});
-    const NewContact contact = contact_of(system, bond);
+    const NewContact contact = bonds.beside_contact ? NewContact{} : contact_of(system, bond);
     system.lost.lost_breaking += energy - system.law().energy(contact.stiffness, contact.overlap);
     if (system.options.verlet()) replace_impulses(system, bond, contact);
     set_broken(system, bond, true);

@@ -10,6 +10,10 @@
 /// with the friction of the collisions. A contact that is in compression when its bond breaks begins with its overlap
 /// and an unstretched tangential spring.
 ///
+/// Where the strengths are `beside_contact`, as those of a parallel bond, the discs touch as others do while they are
+/// bonded: their contact carries compression and friction beside the springs of the bond, which alone decide when it
+/// breaks, and goes on as it is when it has broken.
+///
 /// A bond that breaks switches its lane off; nothing else changes but the pairs of the blocks of its discs.
 #pragma once
 

@@ -59,6 +59,7 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   const std::size_t begin = system.bodies.blocks.begin(b), end = system.bodies.blocks.end(b);
   NewList pairs(system, system.contacts.of(Between::discs).blocks[b], b);
   const bool shapes = !system.shapes.parts.empty(), cell = system.cell.active;
+  const bool touch = system.bonds.beside_contact;
   std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(begin));
   std::vector<std::int64_t> near;
   for (std::size_t i = begin; i < end; ++i) {
@@ -68,7 +69,9 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
     const auto first = static_cast<std::int32_t>(i);
     for (std::size_t k = 0; k < count; ++k) {
       const PeriodicImage j = system.contacts.neighbour(near[k]);
-      if (cell ? is_bonded_image(system, first, j) : are_tied(system.bonds.tied, next_bond, first, j.body)) continue;
+      const bool bonded =
+          !touch && (cell ? is_bonded_image(system, first, j) : are_tied(system.bonds.tied, next_bond, first, j.body));
+      if (bonded) continue;
       if (!shapes || are_discs(system, first, j.body)) pairs.take({first, j});
     }
   }

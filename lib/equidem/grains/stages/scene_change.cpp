@@ -117,7 +117,7 @@ void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Pl
     const auto i = places.partner(contact.i), j = places.partner(contact.j);
     if (!i || !j) {
       impulses.add(contact, -1, i, j);
-    } else if (*j < 0 || !is_tied(own, *i, *j)) {
+    } else if (*j < 0 || own.bonds.beside_contact || !is_tied(own, *i, *j)) {
       contact.part_i += first_part(own, *i) - first_part(old, contact.i);
       contact.part_j += first_part(own, *j) - first_part(old, contact.j);
       contact.i = *i;

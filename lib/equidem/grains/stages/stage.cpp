@@ -229,6 +229,7 @@ std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const Grain
   std::map<std::pair<std::int32_t, std::int32_t>, const GrainContact*> pressed;
   for (const GrainContact& contact : contacts)
     if (contact.j >= 0) pressed[{contact.i, contact.j}] = &contact;
+  const bool touch = how.strengths && how.strengths->after_breaking == AfterBreaking::parallel;
   std::vector<GrainBond> made;
   for (const PairOfGrains& near : near_discs(scene, how.gap_tolerance)) {
     if (tied.contains(near)) continue;
@@ -236,7 +237,7 @@ std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const Grain
     std::tie(bond.i, bond.j) = near;
     bond.rest = rest_of(scene, bond.i, bond.j);
     const auto at = pressed.find({static_cast<std::int32_t>(bond.i), static_cast<std::int32_t>(bond.j)});
-    if (at != pressed.end()) bond.rest = rest_under(*at->second, bond, *bond.rest);
+    if (at != pressed.end() && !touch) bond.rest = rest_under(*at->second, bond, *bond.rest);
   }
   return made;
 }

@@ -31,6 +31,7 @@ struct StageBonds {
 /// The new bonds, ordered by i, then j > i. Discs that press each other keep their force: with f_N, f_T the normal
 /// (compression positive) and tangential force of the contact, the bond is at rest at |l0| = |l| + f_N/kN, turned by
 /// f_T |l|/(kT |l0|²), so that its springs carry what the contact did. A spring that the bond lacks carries nothing.
+/// Where their contact goes on beside the bond it keeps the force, and the bond is at rest as the discs are.
 /// \param scene its bodies, its periodic cell with the present periods, and its bonds so far, broken ones too: their
 ///        discs are not bonded again
 /// \param contacts of the last step

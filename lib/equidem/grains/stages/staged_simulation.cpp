@@ -202,7 +202,7 @@ StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bond
   scene.bonds = make_bonds(scene, contacts, how);
   if (how.strengths) {
     const ContactStrengths made = bond_strengths(scene, *how.strengths);
-    if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
+    if (!bonds.strengths) bonds.strengths = ContactStrengths{{}, {}, made.friction, made.beside_contact};
     bonds.strengths->tension.insert(bonds.strengths->tension.end(), made.tension.begin(), made.tension.end());
     bonds.strengths->shear.insert(bonds.strengths->shear.end(), made.shear.begin(), made.shear.end());
   }
@@ -463,7 +463,9 @@ StagedSimulation::Bonds StagedSimulation::bonds_in(const SavedState& state, std:
     std::tie(bond.i, bond.j, bond.rest) = std::tie(saved.bond.i, saved.bond.j, saved.bond.rest);
     bonds.stages.push_back(saved.stage);
     if (!how.strengths) continue;
-    if (!bonds.strengths) bonds.strengths.emplace().friction = how.strengths->friction;
+    if (!bonds.strengths)
+      bonds.strengths =
+          ContactStrengths{{}, {}, how.strengths->friction, how.strengths->after_breaking == AfterBreaking::parallel};
     bonds.strengths->tension.push_back(saved.tension);
     bonds.strengths->shear.push_back(saved.shear);
   }
