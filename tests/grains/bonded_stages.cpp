@@ -25,9 +25,14 @@ GrainScene columns_to_bond(NormalLaw law, double aside = 0) {
   return scene;
 }
 
-StageBonds stiff_bonds() {
-  return {.gap_tolerance = 0.01,
-          .like = {.normal_dashpot = 5, .normal_spring = 3000, .tangential_spring = 1500, .bending_spring = 100}};
+/// Columns are pressed, then bonded.
+std::vector<GrainStage> press_and_bond(const GrainScene& scene, std::int64_t steps, double normal_spring = 3000) {
+  const GrainStage press{.name = "press", .scene = scene, .steps = steps};
+  std::vector<GrainStage> stages{press, named(press, "bond")};
+  stages[1].bonds = StageBonds{
+      .gap_tolerance = 0.01,
+      .like = {.normal_dashpot = 5, .normal_spring = normal_spring, .tangential_spring = 1500, .bending_spring = 100}};
+  return stages;
 }
 
 }  // namespace
@@ -56,18 +61,16 @@ struct LoadsOnDiscs {
 
 TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_and_moments") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
-  const GrainScene scene = columns_to_bond(stepping.law, 0.8);
-  GrainStage press{.name = "press", .scene = scene, .steps = 150000};
-  GrainStage bond = named(press, "bond");
-  bond.steps = 400;
-  bond.bonds = stiff_bonds();
+  constexpr std::int64_t pressed = 150000;
+  std::vector<GrainStage> stages = press_and_bond(columns_to_bond(stepping.law, 0.8), pressed);
+  stages[1].steps = 400;
   const bool beside = GENERATE(false, true);  // the contact keeps the forces, or the bond takes them over
-  if (beside) bond.bonds->strengths = {.tension = 1e90, .shear = 1e90, .after_breaking = AfterBreaking::parallel};
-  StagedSimulation staged({press, bond}, options_of(stepping, 2e-4));
-  run_to(staged, press.steps);
+  if (beside) stages[1].bonds->strengths = {.tension = 1e90, .shear = 1e90, .after_breaking = AfterBreaking::parallel};
+  StagedSimulation staged(stages, options_of(stepping, 2e-4));
+  run_to(staged, pressed);
   const LoadsOnDiscs before(staged.present());
   const double kinetic = staged.energy().kinetic;
-  run_to(staged, press.steps + 1);
+  run_to(staged, pressed + 1);
   const LoadsOnDiscs after(staged.present());
   double off = 0, off_moment = 0;
   for (const auto& [pair, force] : after.forces)
@@ -83,7 +86,7 @@ TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_a
   CHECK(off < 1e-5 * before.largest_normal);
   CHECK(off < 1e-4 * before.largest_tangential);
   CHECK(off_moment < 1e-4 * before.largest_moment);
-  run_to(staged, press.steps + 400);
+  run_to(staged, pressed + 400);
   const EnergyLedger ledger = staged.energy();
   CAPTURE(kinetic, ledger.kinetic, ledger.elastic(), ledger.error());
   CHECK(ledger.kinetic < 1e-9 * ledger.elastic());
@@ -166,22 +169,18 @@ TEST_CASE("a_disc_that_only_spins_between_plates_with_friction_is_not_at_rest") 
 
 TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shapes_are_refused") {
   const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-4);
-  GrainStage press{.name = "press", .scene = columns_to_bond(NormalLaw::linear_dashpot), .steps = 20000};
-  GrainStage bond = named(press, "bond");
-  bond.bonds = stiff_bonds();
-  bond.bonds->like.normal_spring = 1;
-  StagedSimulation soft({press, bond}, options);
-  run_to(soft, press.steps);
+  const GrainScene columns = columns_to_bond(NormalLaw::linear_dashpot);
+  StagedSimulation soft(press_and_bond(columns, 20000, 1), options);
+  run_to(soft, 20000);
   const Bits then = bits_of(soft.present());
   for (int k = 0; k < 2; ++k) {
     CHECK(check_refused([&] { soft.advance(1); }, {"too soft"}).where == "stage 'bond'");
     CHECK(bits_of(soft.present()) == then);  // the state is that before the stage
     CHECK(soft.reports().size() == 1);
-    CHECK(soft.milestone() == press.steps);
+    CHECK(soft.milestone() == 20000);
   }
   const auto refused = [&](const auto& change, const std::string& word, NormalLaw law = NormalLaw::linear_dashpot) {
-    std::vector<GrainStage> stages{press, bond};
-    stages[1].bonds = stiff_bonds();
+    std::vector<GrainStage> stages = press_and_bond(columns, 20000);
     change(stages);
     check_refused([&] { StagedSimulation(stages, options_of(law, 2e-4)); }, {word});
   };
@@ -199,15 +198,13 @@ TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shap
 }
 
 TEST_CASE("a_saved_stage_with_bonds_or_bodies_that_the_run_lacks_is_refused") {
-  GrainStage press{.name = "press", .scene = columns_to_bond(NormalLaw::linear_dashpot), .steps = 10};
-  GrainStage bond = named(press, "bond");
-  bond.bonds = stiff_bonds();
-  StagedSimulation staged({press, bond}, options_of(NormalLaw::linear_dashpot, 2e-4));
+  const std::vector<GrainStage> stages = press_and_bond(columns_to_bond(NormalLaw::linear_dashpot), 10);
+  StagedSimulation staged(stages, options_of(NormalLaw::linear_dashpot, 2e-4));
   run_to(staged, 15);
   const SavedState state = staged.save();
   const Bits then = bits_of(staged.present());
   REQUIRE(!state["stage_bonds"].empty());
-  const double beyond = static_cast<double>(press.scene.grains.size());
+  const double beyond = static_cast<double>(stages[0].scene.grains.size());
   // numbers of bodies and stages, in columns of arrays
   for (const auto& [array, column] : {std::pair{"stage_bonds", 0},
                                       {"stage_bonds", 1},
@@ -231,14 +228,11 @@ TEST_CASE("a_saved_stage_with_bonds_or_bodies_that_the_run_lacks_is_refused") {
 
 TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
   const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-3);
-  GrainStage press{.name = "press", .scene = columns_to_bond(NormalLaw::linear_dashpot), .steps = 10};
-  GrainStage bond = named(press, "bond");
-  bond.bonds = stiff_bonds();
-  bond.bonds->like.normal_spring = 1e7;
-  StagedSimulation staged({press, bond}, options);
-  run_to(staged, press.steps);
+  const std::vector<GrainStage> stages = press_and_bond(columns_to_bond(NormalLaw::linear_dashpot), 10, 1e7);
+  StagedSimulation staged(stages, options);
+  run_to(staged, 10);
   CHECK(check_refused([&] { staged.advance(1); }, {"limit"}).where == "stage 'bond'");
-  const double likely = likely_step_limit(press.scene.grains, *bond.bonds, GrainOptions::BondStep::exact);
+  const double likely = likely_step_limit(stages[0].scene.grains, *stages[1].bonds, GrainOptions::BondStep::exact);
   CAPTURE(likely);
   CHECK(likely < options.time_step);
 }

@@ -81,9 +81,7 @@ TEST_CASE("the_maps_lose_1_minus_e_squared_at_any_phase_of_contact") {
         for (const double a : {0.01, 0.1, 0.9, 1.0, 4.0}) {
           if (law == NormalLaw::five_case_map && e * e < a / (1 + a)) continue;
           for (int p = 0; p <= 40; ++p) {
-            PairProperties pair;
-            pair.dimensionless = a;
-            pair.restitution = e;
+            PairProperties pair{.dimensionless = a, .restitution = e};
             const Rebound result = rebound(impact, options_of(law, 0.1), pair, p / 40.0);
             const double in = 0.5 * impact.reduced_mass();
             CAPTURE(to_string(law), impact.name, e, a, p, result.steps, result.restitution,
@@ -144,8 +142,7 @@ namespace {
 
 /// Two equal discs that mirror each other between two walls, so that neither touches two things at once.
 double energy_drift(NormalLaw law, std::int64_t impacts, std::int64_t* steps) {
-  PairProperties pair;
-  pair.dimensionless = law == NormalLaw::exact_flow ? 1.0 : 0.1;
+  PairProperties pair{.dimensionless = law == NormalLaw::exact_flow ? 1.0 : 0.1};
   GrainOptions options = options_of(law, 0.2);
   options.margin = 1000;  // the lists last
   GrainSimulation simulation(scene_of({ball({-1.5, 0}, 1, {1, 0}), ball({1.5, 0}, 1, {-1, 0})},
@@ -182,8 +179,7 @@ TEST_CASE("steps_that_could_feed_a_cluster_are_counted") {
     const double closer = 2 - 1e-3;
     scene.grains.push_back(ball({closer * k, 0}, 1, {}));
   }
-  PairProperties pair;
-  pair.dimensionless = turn * turn;
+  PairProperties pair{.dimensionless = turn * turn};
   scene.pairs = {pair};
   GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 1e-3));
   simulation.advance(1);

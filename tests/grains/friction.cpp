@@ -11,11 +11,6 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-struct Oblique {
-  Vec2 velocity;
-  double spin = 0;
-};
-
 /// Off a floor; the floor is horizontal, the radius 1 (of maps 1/4: their overlaps are small), contact begins within
 /// the second step.
 struct Shot {
@@ -157,8 +152,7 @@ TEST_CASE("a_disc_that_slides_comes_to_roll") {
   // F12: on a floor that carries its weight, u = u0/(1 + beta), at t = u0 beta/((1 + beta) mu g).
   const Stepping stepping = GENERATE(from_range(all_steppings));
   const double beta = GENERATE(0.4, 0.5);
-  PairProperties pair;
-  pair.friction = 0.4;
+  PairProperties pair{.friction = 0.4};
   if (gives_force(stepping.law)) return;  // these stick by a spring, which swings
   pair.restitution = 0.5;
   pair.stiffness = stepping.law == NormalLaw::hertz_dashpot ? 1e6 : 1e4;
@@ -186,13 +180,12 @@ TEST_CASE("a_contact_that_sticks_under_a_steady_load_does_not_creep") {
   scene.grains = {ball({0, std::sqrt(2.0)}, 1)};
   scene.walls = {line("left", {}, {root, root}), line("right", {}, {-root, root})};
   scene.gravity = {2, -9.8};
-  PairProperties pair;
-  pair.stiffness = 1e6;
-  pair.restitution = 0.3;
-  pair.end = ContactEnd::at_zero_overlap;
-  pair.friction = 0.8;
-  pair.tangential_ratio = 0.5;
-  pair.tangential_damping = 0.3;
+  PairProperties pair{.stiffness = 1e6,
+                      .restitution = 0.3,
+                      .end = ContactEnd::at_zero_overlap,
+                      .friction = 0.8,
+                      .tangential_ratio = 0.5,
+                      .tangential_damping = 0.3};
   scene.pairs = {pair};
   GrainSimulation simulation(scene, options_of(law, 1e-4));
   simulation.advance(40000);
@@ -217,12 +210,8 @@ TEST_CASE("what_sticks_stretches_its_springs_by_the_way_of_the_bodies_however_lo
   constexpr double duration = 2000;
   scene.walls[2].move_x = {Schedule::Kind::ramp, way.x, 0, duration};
   scene.walls[2].move_y = {Schedule::Kind::ramp, way.y, 0, duration};
-  PairProperties pair;
-  pair.stiffness = 1;
-  pair.restitution = 0.2;
-  pair.friction = 100;
-  pair.tangential_damping = 0.2;
-  pair.tangential_ratio = 0.5;
+  PairProperties pair{
+      .stiffness = 1, .restitution = 0.2, .friction = 100, .tangential_ratio = 0.5, .tangential_damping = 0.2};
   scene.pairs = {pair};
   GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, phase));
   simulation.advance(static_cast<std::int64_t>(1.2 * duration / phase));

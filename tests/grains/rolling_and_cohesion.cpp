@@ -216,8 +216,7 @@ TEST_CASE("bodies_of_all_shapes_attract_each_other_within_the_range_and_keep_the
     scene.grains.push_back(body_of(scene, second, {1 + gap, 0}));
   }
   const double mass = at_wall ? 1 : 0.5;
-  const GrainOptions options = options_of(stepping, 1e-4);
-  GrainSimulation simulation(scene, options);
+  GrainSimulation simulation(scene, options_of(stepping, 1e-4));
   const double initial = simulation.energy().initial;
   CHECK(initial == Approx(-cohesion * (0.05 - gap)).epsilon(1e-9));
   const auto closing = [&] {
