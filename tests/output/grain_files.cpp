@@ -204,6 +204,40 @@ TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
   CHECK(refusal_of([&] { write_grain_picture(folder.path(), "lost", picture, false); }).says("grain 1"));
 }
 
+TEST_CASE("a_picture_of_a_periodic_cell_shows_the_images_that_reach_into_it") {
+  const TemporaryFolder folder;
+  const auto fills = [&](const std::string& name, const GrainPicture& picture) {
+    write_grain_picture(folder.path(), name, picture, false);
+    const std::string svg = read_file(folder.path() / (name + ".svg"));
+    std::ptrdiff_t found = 0;
+    for (std::size_t at = 0; (at = svg.find("fill-rule", at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  constexpr double shift = 0.3;
+  const PeriodicCell upright{.width = 1, .height = 1}, slanted{.width = 1, .height = 1, .shift = shift};
+  const PeriodicCell between_walls{.along = PeriodicCell::Along::x, .width = 1};
+  struct Place {
+    const char* name;
+    PeriodicCell cell;
+    Vec2 centre;
+    std::ptrdiff_t images;
+  };
+  // the slanted cell is about the same centre, so that its lower left corner is at (-shift/2, 0)
+  const Place places[] = {{"inside", upright, {0.5, 0.5}, 0},        {"left", upright, {0.05, 0.5}, 1},
+                          {"top", upright, {0.5, 0.97}, 1},          {"corner", upright, {0.02, 0.03}, 3},
+                          {"slanted", slanted, {0.5, 0.5}, 0},       {"slanted_left", slanted, {0.02, 0.5}, 1},
+                          {"slanted_foot", slanted, {0.5, 0.05}, 1}, {"slanted_corner", slanted, {-0.5 * shift, 0}, 3},
+                          {"x_inside", between_walls, {0.5, 5}, 0},  {"x_side", between_walls, {0.97, 5}, 1}};
+  for (const Place& place : places) {
+    CAPTURE(place.name);
+    const std::vector<Grain> disc{{.position = place.centre, .radius = 0.1, .inertia = {}}};
+    const std::string name = place.name;
+    const std::ptrdiff_t alone = fills(name + "_alone", {.grains = disc});
+    CHECK(alone > 0);
+    CHECK(fills(name, {.grains = disc, .cell = place.cell}) == (1 + place.images) * alone);
+  }
+}
+
 TEST_CASE("a_picture_of_an_open_scene_leaves_out_what_has_fallen_far_below_it") {
   const TemporaryFolder folder;
   const auto started = grains_at(0, 4);

@@ -100,7 +100,8 @@ TEST_CASE("a_biaxial_test_reads_the_angles_and_the_stiffness_of_its_law") {
     CHECK(answer(read, "secant_modulus") ==
           Approx((peak - side_stress) / law.peak_strain).epsilon(3 * spacing / law.peak_strain));
     CHECK(answer(read, "void_ratio/start") == Approx(0.25).epsilon(0.01));
-    CHECK(answer(read, "volume_strain") == Approx(shortening * 2 * sine / (1 - sine)).epsilon(0.01));
+    CHECK(answer(read, "volume_strain") ==
+          Approx(shortening * 2 * sine / (1 - sine)).epsilon(0.01).margin(spacing * spacing));
     CHECK(test->plots("").size() == 3);
   }
 }
@@ -112,7 +113,7 @@ TEST_CASE("a_stress_that_still_grows_is_no_strength") {
   std::vector<Grain> block, disc;
   for (int column = 0; column < 10; ++column)
     for (int row = 0; row < 20; ++row)
-      block.push_back({.position = {0.005 + 0.01 * column, 0.005 + 0.01 * row}, .radius = 0.005});
+      block.push_back({.position = {0.005 + 0.01 * column, 0.005 + 0.01 * row}, .radius = 0.005, .inertia = {}});
   for (const Grain& grain : block)
     if (norm(grain.position - Vec2{0.05, 0.05}) < 0.046) disc.push_back(grain);
   const auto falls = [](double strain) { return 1e6 * (strain < 0.05 ? strain / 0.05 : 0.2); };
@@ -135,7 +136,7 @@ TEST_CASE("a_stress_that_still_grows_is_no_strength") {
       low = std::min(low, grain.position.x - grain.radius), high = std::max(high, grain.position.x + grain.radius);
     CHECK(answer(of_disc, "strength") ==
           Approx(2 * sample_width / (std::numbers::pi * (high - low)) * answer(of_block, "strength")));
-    CHECK((of_block.report().find("unconfined compressive strength 1") != std::string::npos) == fallen);
+    CHECK((of_block.report().find("so far at most") == std::string::npos) == fallen);
     CHECK((of_disc.report().find("this is no tensile strength") != std::string::npos) == !fallen);
     CHECK(std::get<bool>(find_result(of_block, "sample/load_has_fallen")->value.value) == fallen);
   }

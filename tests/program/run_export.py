@@ -174,7 +174,7 @@ class Refusals(ExportTest):
                 (dict(further=RAMP + RUN + turning), ["lammps"], "rotations that follow a schedule", "support of 'top'"),
                 (dict(load='schedule = "slow"', further=long + RUN), ENGINES, "load on 'top'"),
                 (dict(load="moment = 1.0"), ["lammps"], "moments as loads", "yade"),
-                (dict(further="[strength]\ntension = 1.0\nshear = 2.0\n"), ENGINES, "friction 0 where shear/tension is 2", "strength.friction"),
+                (dict(further="[strength]\ntension = 1.0\nshear = 2.0\n"), ENGINES, "strength"),
                 (dict(further="[strength]\ntension = 1.0\nshear = 2.0\nfriction = 2.0\n"), ("yade",), "strengths of bonds", "lammps"),
                 *((dict(further=table), ENGINES, "notches or dead loads") for table in (
                     '[[dead_load]]\ngroup = "top"\nforce = [0.0, 1.0]\n',
@@ -184,6 +184,8 @@ class Refusals(ExportTest):
                 (dict(further=damped.format("local = 0.1")), ()),
                 (dict(assembly='body = "sphere"'), ())):
             self.check_refused(self.bonds(**case), engines, *words)
+        weak = self.bonds("[strength]\ntension = 1.0\nshear = 2.0\nfriction = 0.5\n")
+        self.check_error(self.export(weak, "lammps"), 2, "friction 0.5 where shear/tension is 2", "Set strength.friction")
         self.check_refused(self.weighted(), ())
         two = self.bonds('case = "a"\n[[load]]\ngroup = "top"\nforce = [0.0, 1.0]\ncase = "b"\n')
         self.check_error(self.export(two, "yade"), 2, "2 load cases")

@@ -142,3 +142,22 @@ def test_springs_of_each_contact_are_scaled_alike():
 def test_wrong_forces_strengths_and_springs_are_refused(call, words):
     with pytest.raises(eq.BadInput, match=words):
         call()
+
+
+def test_the_stress_of_a_path_is_the_traction_of_its_load_on_the_side():
+    """Supports that move two opposite sides apart: a traction of that stress has the same resultant. Supports that shear have no section."""
+    plate, springs = eq.hexagonal(columns=7, rows=9, radius=0.5e-3), eq.Springs(kN=1e10, kT=3e9)
+    held = {"group": "bottom", "ux": 0.0, "uy": 0.0}
+    strength = {"tension": 1e4, "shear": 2e4, "weibull_modulus": 8.0}
+    for pulled in ({"group": "top", "uy": 1e-6}, {"group": "top", "uy": -1e-6}):
+        path = eq.Case(assembly=plate, springs=springs, supports=[held, pulled], strength=strength,
+                       quasistatic={"max_events": 5}).quasistatic()
+        peak = path.peak
+        solved = eq.solve(plate, springs, supports=[held],
+                          loads=[{"group": "top", "force": (0.0, peak.section_stress), "kind": "traction"}])
+        assert -solved.reactions[:, 1].sum() == pytest.approx(peak.load, rel=1e-9)
+        height = 8 * np.sqrt(3) * 0.5e-3
+        assert peak.section_strain == pytest.approx(peak.motion / height, rel=1e-9)
+    sheared = eq.Case(assembly=plate, springs=springs, supports=[held, {"group": "top", "ux": 1e-6, "uy": 0.0}],
+                      strength=strength, quasistatic={"max_events": 5}).quasistatic()
+    assert "section_stress" not in sheared.peak

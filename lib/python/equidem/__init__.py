@@ -33,9 +33,9 @@ __version__: str = _core.version
 __all__ = [
     "Assembly", "BadInput", "Case", "ComputationFailed", "ConsolidatedSand", "EquidemError", "Factor",
     "FittedSprings", "Frame", "Interrupted", "Result", "Simulation", "Springs", "StrengthSample", "assembly",
-    "calibrate", "consolidate", "delaunay", "factorize", "fit_springs", "form_derivatives", "hexagonal", "homogenize", "pack", "pack_discs", "plot", "read",
-    "run", "set_threads", "show_progress", "simulation", "solve", "square", "stability", "stiffness_matrix", "study",
-    "sweep", "tension_test", "threads", "triangulated",
+    "calibrate", "consolidate", "delaunay", "factorize", "fit_springs", "form_derivatives", "hexagonal",
+    "homogenize", "pack", "pack_discs", "plot", "read", "run", "set_threads", "show_progress", "simulation",
+    "solve", "square", "stability", "stiffness_matrix", "study", "sweep", "tension_test", "threads", "triangulated",
 ]
 
 

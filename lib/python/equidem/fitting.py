@@ -316,9 +316,9 @@ class ConsolidatedSand:
 
 def consolidate(case: Case, *, void_ratio: float | None = None, porosity: float | None = None,
                 tolerance: float = 2e-3, largest_friction: float = 1.0) -> ConsolidatedSand:
-    """The friction with which the first stage of a case consolidates sand to a wanted void ratio, by bisection: friction
-    keeps discs from sliding into voids, so that the same stress leaves a looser packing (Thornton 2000; Agnolin and Roux
-    2007). Later stages give the sand the friction of its test.
+    """The friction with which the first stage of a case consolidates sand to a wanted void ratio, by bisection: it
+    keeps discs from sliding into voids, so that the same stress leaves a looser packing. Later stages give the sand the
+    friction of its test.
 
     Parameters
     ----------
@@ -375,8 +375,8 @@ def consolidate(case: Case, *, void_ratio: float | None = None, porosity: float 
     friction = min(tried, key=lambda mu: (abs(tried[mu] - wanted), mu))
     if abs(tried[friction] - wanted) > tolerance:
         raise ComputationFailed(f"the void ratio {wanted:.4g} is not reached to {tolerance:g}",
-                                f"friction {friction:.4g} is nearest, with {tried[friction]:.4g}: the packing jumps from "
-                                "one friction to the next", "Take more discs, or a larger tolerance")
+                                f"friction {friction:.4g} is nearest, with {tried[friction]:.4g}: the packing jumps "
+                                "from one friction to the next", "Take more discs, or a larger tolerance")
     return ConsolidatedSand(friction, tried[friction], case.copy().set("collisions.friction", friction), tried)
 
 
@@ -387,9 +387,11 @@ def _void_ratio(simulation: Simulation) -> float:
     bodies, walls = simulation.assembly, simulation.walls
     spans = []
     for axis in range(2):
-        pressed = sorted((wall["position"][axis] for wall in walls.values() if wall["force"][axis] != 0))
+        pressed = sorted(wall["position"][axis] for wall in walls.values()
+                         if abs(wall["force"][axis]) > abs(wall["force"][1 - axis]))  # normal beside friction
         spans.append(pressed[-1] - pressed[0] if len(pressed) == 2 else 0.0)
     if len(walls) != 4 or min(spans) <= 0 or bodies is None or len(bodies) != len(simulation.positions):
-        raise BadInput("this sample has no void ratio", "it is neither in a periodic cell nor discs between four plates",
+        raise BadInput("this sample has no void ratio",
+                       "it is neither in a periodic cell nor discs between four plates",
                        "Consolidate it in a [cell], or between two pairs of opposite walls")
     return float(spans[0] * spans[1]) / (np.pi * float((np.asarray(bodies.radii) ** 2).sum())) - 1

@@ -151,7 +151,8 @@ def energies(result: Result, ax: Axes | None = None) -> Axes:
 
 def of(result: Result, ax: Axes | None = None, **options: Any) -> Axes:
     """The picture that suits a result."""
-    for name, drawn in (("dispersion", dispersion), ("load_envelope", curve), ("curves", stress), ("energies", energies)):
+    for name, drawn in (("dispersion", dispersion), ("load_envelope", curve), ("curves", stress),
+                        ("energies", energies)):
         if name in result and not (name == "energies" and "time_s" not in result.energies):
             return drawn(result, ax, **options)
     if result.assembly is None:

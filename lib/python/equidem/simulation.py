@@ -124,8 +124,8 @@ class Simulation:
 
     @property
     def walls(self) -> Mapping[str, Mapping[str, Any]]:
-        """Each wall by its name: position and velocity (x, y) in m and m/s, force (x, y) of the bodies on it in the last
-        step in N/m (spheres: N), moment, and of bodies that collide impulse and work since the start."""
+        """Each wall by its name: position and velocity (x, y) in m and m/s, force (x, y) of the bodies on it in the
+        last step in N/m (spheres: N), moment, and of bodies that collide impulse and work since the start."""
         return self._steps.walls()
 
     @property
@@ -162,8 +162,8 @@ class Simulation:
         Parameters
         ----------
         values
-            Rates ``xx``, ``yy`` and ``xy`` in 1/s, and stresses ``stress_xx`` and ``stress_yy`` in Pa, tension positive,
-            where the case has [cell.servo]. A rate ends the stress of its component, and a stress its rate.
+            Rates ``xx``, ``yy`` and ``xy`` in 1/s, and stresses ``stress_xx`` and ``stress_yy`` in Pa, tension
+            positive, where the case has [cell.servo]. A rate ends the stress of its component, and a stress its rate.
 
         Raises
         ------

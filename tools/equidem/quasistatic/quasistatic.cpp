@@ -232,19 +232,23 @@ void add_peak(Results& out, const BreakageScene& scene, const EventPath& run,
         .add("peak/load", "", peak.load, load, {.digits = 9})
         .add("peak/motion", "at the motion", peak.motion, motion)
         .add("peak/lambda", "lambda", peak.lambda);
-    if (section)
-      out.line("strength")
-          .add("peak/section_stress", "", peak.load / section->width, "Pa", {.digits = 9})
-          .add("peak/section_strain", "at a strain of", peak.motion / section->height);
+  };
+  const auto add_stress = [&](const auto& peak) {
+    if (!section) return;
+    out.line("largest stress")
+        .add("peak/section_stress", "", peak.load / section->width, "Pa", {.digits = 9})
+        .add("peak/section_strain", "at a strain of", peak.motion / section->height);
   };
   if (event != events.end() && (point == points.end() || size_of(*event) >= size_of(*point))) {
     add(*event);
     out.add("peak/event", "event", event - events.begin()).set("peak/stress", event->stress);
+    add_stress(*event);
   } else if (events.size() + points.size() > 1) {
     add(*point);
     const auto leg = point - points.begin() - 1;
     out.note(leg < 0 ? ", at the start" : fmt::format(", at the end of leg {}", leg)).set("peak/event", nullptr);
     out.set("peak/stress", point->stress);
+    add_stress(*point);
   }
 }
 

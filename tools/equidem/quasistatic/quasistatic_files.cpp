@@ -247,19 +247,23 @@ std::optional<TestedSection> section_of(const Assembly& assembly, std::span<cons
       if (support.*along) sides.push_back(&support);
     }
     if (other_motion || sides.size() != 2 || sides[0]->*along == sides[1]->*along) continue;
-    double width = 0, places[2] = {};
+    double width = 0, places[2] = {}, deepest = 0;
     for (std::size_t k = 0; k < 2; ++k) {
       const auto found = assembly.groups.find(sides[k]->group);
       if (found == assembly.groups.end() || found->second.tributary_lengths.empty()) return {};
       const DiscGroup& group = found->second;
+      double low = INFINITY, high = -INFINITY;
       for (std::size_t d = 0; d < group.discs.size(); ++d) {
         const Vec2 centre = assembly.centres[static_cast<std::size_t>(group.discs[d])];
+        const double at = along_y ? centre.y : centre.x;
+        low = std::min(low, at), high = std::max(high, at);
         width += group.tributary_lengths[d] / 2;  // the mean of the two sides
-        places[k] += (along_y ? centre.y : centre.x) / static_cast<double>(group.discs.size());
+        places[k] += at / static_cast<double>(group.discs.size());
       }
+      deepest = std::max(deepest, high - low);
     }
     const double height = std::abs(places[1] - places[0]);
-    return height > 0 ? std::optional(TestedSection{width, height}) : std::nullopt;
+    if (deepest < height) return TestedSection{width, height};  // else the motion is along the sides: it shears
   }
   return {};
 }

@@ -91,8 +91,9 @@ struct EnumNames<EngineFeature> {
       {strengths, "strengths of bonds", true, false, "a cohesive contact that broke goes on to push",
        "Export to lammps, or take out [strength]"},
       {other_strengths, "strengths whose friction is not shear/tension, or with friction after breaking", false, false,
-       "its bonds are gone where N/tension + |T|/shear reaches 1, which is |T| = shear - friction N for friction = "
-       "shear/tension alone",
+       "its bonds are gone where N/tension + T/shear reaches 1, the tangential force T then being shear - friction N "
+       "with "
+       "friction = shear/tension",
        "Set strength.friction to shear/tension, or use 'equidem quasistatic'"},
       {cells, "periodic cells of bodies that collide, or shorter than twice the longest bond", false, false,
        "a bond joins the nearest images there, and the motion of the sides is not written",
