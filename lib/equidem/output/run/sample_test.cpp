@@ -14,6 +14,7 @@ namespace equidem {
 namespace {
 
 constexpr double still = 1e-9;  // change of a length, over it, that is no motion
+constexpr std::size_t fewest_rows = 4;
 
 /// Two opposite lines along an axis of the coordinates, normals towards one another.
 struct PlatePair {
@@ -121,6 +122,34 @@ double slope(const std::vector<double>& x, const auto& y, std::size_t first, std
   return xy / xx;
 }
 
+double farthest(const std::vector<double>& displacements) {
+  double most = 0;
+  for (const double at : displacements)
+    if (std::abs(at) > std::abs(most)) most = at;
+  return most;
+}
+
+/// Of discs with their radii, m.
+struct Extent {
+  double x = 0, y = 0;
+  bool round = false;  ///< a disc of discs
+};
+
+Extent extent_of(std::span<const Grain> discs) {
+  constexpr double of_circle = 1.05;  // a corner of a square is at root 2
+  Vec2 low{INFINITY, INFINITY}, high = -low, centre{};
+  for (const Grain& disc : discs) {
+    const Vec2 x = disc.position;
+    low = {std::min(low.x, x.x - disc.radius), std::min(low.y, x.y - disc.radius)};
+    high = {std::max(high.x, x.x + disc.radius), std::max(high.y, x.y + disc.radius)};
+    centre += x / static_cast<double>(discs.size());
+  }
+  double reach = 0;
+  for (const Grain& disc : discs) reach = std::max(reach, norm(disc.position - centre) + disc.radius);
+  const Vec2 size = high - low;
+  return {size.x, size.y, 2 * reach < of_circle * std::max(size.x, size.y)};
+}
+
 double largest_finite(const std::vector<double>& values) {
   double largest = -std::numeric_limits<double>::infinity();
   for (const double value : values)
@@ -181,7 +210,7 @@ struct SampleTest::Reader {
     for (std::size_t k = 0; k < forces.size(); ++k) forces[k] = (forces[k] - low[k]) / 2;
     return forces;
   }
-  /// Forget rows before the last one at which a motion is still that of the first.
+  /// Removes rows before the last one at which a motion is still that of the first.
   void begin_at_motion(const std::vector<double>& motion) {
     std::size_t first = 0;
     while (first + 1 < motion.size() && std::abs(motion[first + 1] - motion[0]) < still) ++first;
@@ -193,130 +222,110 @@ bool SampleTest::loads(const LoadedSample& sample) {
   return loading_stage(sample).first != nullptr;
 }
 
+void SampleTest::take_cell(Reader& read, bool shears, bool servo) {
+  kind_ = shears ? Kind::cell_shear : Kind::cell_compression;
+  if (!servo) read.begin_at_motion(read(shears ? "cell_strain_xy" : along_y_ ? "cell_strain_yy" : "cell_strain_xx"));
+  const auto xx = read("cell_strain_xx"), yy = read("cell_strain_yy"), xy = read("cell_strain_xy");
+  const auto sxx = read("cell_stress_xx_Pa"), syy = read("cell_stress_yy_Pa");
+  const auto sxy = read("cell_stress_xy_Pa"), syx = read("cell_stress_yx_Pa");
+  time_ = read("time_s");
+  for (std::size_t k = 0; k < time_.size(); ++k) {
+    strain_.push_back({xx[0] - xx[k], yy[0] - yy[k], xy[k] - xy[0]});
+    stress_.push_back({-sxx[k], -syy[k], middle(sxy[k], syx[k])});
+    if (along_y_) continue;
+    std::swap(strain_.back().xx, strain_.back().yy);
+    std::swap(stress_.back().xx, stress_.back().yy);
+  }
+  if (shears && strain_.back().xy < 0)
+    for (std::size_t k = 0; k < time_.size(); ++k) strain_[k].xy *= -1, stress_[k].xy *= -1;
+  void_ratio_ = read("cell_void_ratio");
+  coordination_ = read("cell_coordination_number");
+  extends_ = !shears && strain_.back().yy < 0;
+}
+
+void SampleTest::take_walls(Reader& read, const LoadedSample& sample, const GrainScene& scene, bool shears,
+                            bool servo) {
+  const std::vector<PlatePair> pairs = plates_of(scene);
+  const PlatePair& pair = *std::ranges::find(pairs, along_y_, &PlatePair::along_y);
+  // along the plates, since the start
+  const auto displacement = [&](const Wall& wall) {
+    std::vector<double> moved = read.place(wall, !along_y_);
+    for (double& at : moved | std::views::drop(1)) at -= moved[0];
+    if (!moved.empty()) moved[0] = 0;
+    return moved;
+  };
+  const Wall* mover = pair.low;
+  if (shears) {
+    const double high = std::abs(farthest(displacement(*pair.high))), low = std::abs(farthest(displacement(*pair.low)));
+    if (high > low) mover = pair.high;
+    std::vector<double> moved = displacement(*mover);
+    for (double& at : moved) at /= norm(pair.high->point - pair.low->point);
+    read.begin_at_motion(moved);
+  } else if (!servo) {
+    std::vector<double> stretch = read.distance(pair);
+    for (double& length : stretch) length = std::log(length);
+    read.begin_at_motion(stretch);
+  }
+  const std::vector<double> time = read("time_s"), height = read.distance(pair);
+  if (time.size() < fewest_rows || height.size() != time.size()) return;
+
+  // the section: the distance of the other walls, the period, or the extent of the discs
+  const Extent extent = extent_of(sample.discs);
+  const bool two_pairs = pairs.size() == 2, bounded = two_pairs && !shears;
+  std::vector<double> width;
+  if (two_pairs) width = read.distance(pairs[along_y_ ? 1 : 0]);
+  if (!two_pairs && scene.cell && along_y_) {
+    width = read("cell_width_m");
+    if (width.empty()) width.assign(time.size(), scene.cell->width);
+  }
+  if (width.empty()) width.assign(time.size(), along_y_ ? extent.x : extent.y);
+  kind_ = shears ? Kind::shear_box : bounded ? Kind::biaxial : extent.round ? Kind::brazilian : Kind::unconfined;
+
+  std::vector<double> shear, moved, lateral;
+  if (shears) {
+    moved = displacement(*mover);
+    const double sign = farthest(moved) < 0 ? -1 : 1;
+    for (double& at : moved) at *= sign;
+    shear.assign(time.size() - 1, 0);
+    for (const Wall& wall : scene.walls) {
+      const std::vector<double> other = displacement(wall), force = read.force(wall, !along_y_, time);
+      bool together = other.size() == moved.size();
+      for (std::size_t k = 0; together && k < moved.size(); ++k)
+        together = std::abs(sign * other[k] - moved[k]) < still * height[0];
+      for (std::size_t k = 0; together && k < force.size(); ++k) shear[k] -= sign * force[k];
+    }
+  } else if (bounded) {
+    lateral = read.force(pairs[along_y_ ? 1 : 0], time);
+  }
+  const std::vector<double> axial = read.force(pair, time);
+  for (std::size_t k = 0; k + 1 < time.size(); ++k) {
+    const double h = middle(height[k], height[k + 1]), w = middle(width[k], width[k + 1]);
+    const double section = kind_ == Kind::brazilian ? std::numbers::pi * std::max(extent.x, extent.y) / 2 : w;
+    time_.push_back(middle(time[k], time[k + 1]));
+    strain_.push_back({bounded ? std::log(width[0] / w) : 0, std::log(height[0] / h),
+                       shears ? middle(moved[k], moved[k + 1]) / height[0] : 0});
+    stress_.push_back({bounded ? lateral[k] / h : 0, axial[k] / section, shears ? shear[k] / section : 0});
+    if (bounded && sample.solid_area > 0) void_ratio_.push_back(w * h / sample.solid_area - 1);
+  }
+}
+
 std::optional<SampleTest> SampleTest::read(const std::string& history, const LoadedSample& sample) {
   const auto [stage, drive] = loading_stage(sample);
   if (stage == nullptr) return {};
-  const GrainScene& scene = *stage->scene;
   SampleTest test;
   test.bonded_ = sample.bonded;
   test.along_y_ = drive.along_y;
   Reader read(history, stage->start);
-  constexpr std::size_t fewest = 4;
-  if (read.rows.size() < fewest) return {};
-  const bool shears = drive.how == Drive::How::shear;
-
-  if (is_whole_cell(scene)) {
-    test.kind_ = shears ? Kind::cell_shear : Kind::cell_compression;
-    if (drive.how != Drive::How::servo)
-      read.begin_at_motion(read(shears ? "cell_strain_xy" : drive.along_y ? "cell_strain_yy" : "cell_strain_xx"));
-    const auto xx = read("cell_strain_xx"), yy = read("cell_strain_yy"), xy = read("cell_strain_xy");
-    const auto sxx = read("cell_stress_xx_Pa"), syy = read("cell_stress_yy_Pa");
-    const auto sxy = read("cell_stress_xy_Pa"), syx = read("cell_stress_yx_Pa");
-    test.time_ = read("time_s");
-    for (std::size_t k = 0; k < test.time_.size(); ++k) {
-      test.strain_.push_back({xx[0] - xx[k], yy[0] - yy[k], xy[k] - xy[0]});
-      test.stress_.push_back({-sxx[k], -syy[k], middle(sxy[k], syx[k])});
-      if (test.along_y_) continue;
-      std::swap(test.strain_.back().xx, test.strain_.back().yy);
-      std::swap(test.stress_.back().xx, test.stress_.back().yy);
-    }
-    if (shears && test.strain_.back().xy < 0)
-      for (std::size_t k = 0; k < test.time_.size(); ++k) test.strain_[k].xy *= -1, test.stress_[k].xy *= -1;
-    test.void_ratio_ = read("cell_void_ratio");
-    test.coordination_ = read("cell_coordination_number");
-    test.extends_ = !shears && test.strain_.back().yy < 0;
-  } else {
-    const std::vector<PlatePair> pairs = plates_of(scene);
-    const PlatePair& pair = *std::ranges::find(pairs, drive.along_y, &PlatePair::along_y);
-    const bool y = pair.along_y;
-    // the way of a wall along the plates since the start
-    const auto way = [&](const Wall& wall) {
-      std::vector<double> ways = read.place(wall, !y);
-      for (double& at : ways | std::views::drop(1)) at -= ways[0];
-      if (!ways.empty()) ways[0] = 0;
-      return ways;
-    };
-    const auto furthest = [](const std::vector<double>& ways) {
-      double most = 0;
-      for (const double at : ways)
-        if (std::abs(at) > std::abs(most)) most = at;
-      return most;
-    };
-    const Wall* mover = pair.low;
-    if (shears) {
-      if (std::abs(furthest(way(*pair.high))) > std::abs(furthest(way(*pair.low)))) mover = pair.high;
-      std::vector<double> moved = way(*mover);
-      for (double& at : moved) at /= norm(pair.high->point - pair.low->point);
-      read.begin_at_motion(moved);
-    } else if (drive.how != Drive::How::servo) {
-      std::vector<double> stretch = read.distance(pair);
-      for (double& length : stretch) length = std::log(length);
-      read.begin_at_motion(stretch);
-    }
-    const std::vector<double> time = read("time_s"), height = read.distance(pair);
-    if (time.size() < fewest || height.size() != time.size()) return {};
-    const std::vector<double> axial = read.force(pair, time);
-
-    // the section: the distance of the other walls, the period, or the extent of the discs
-    std::vector<double> width;
-    bool bounded = false;
-    if (pairs.size() == 2) {
-      width = read.distance(pairs[y ? 1 : 0]);
-      bounded = !shears;
-    } else if (scene.cell && y) {
-      width = read("cell_width_m");
-      if (width.empty()) width.assign(time.size(), scene.cell->width);
-    }
-    double extent[2] = {}, furthest_out = 0;
-    for (const bool up : {false, true}) {
-      double low = INFINITY, high = -INFINITY;
-      for (const Grain& disc : sample.discs) {
-        const double at = up ? disc.position.y : disc.position.x;
-        low = std::min(low, at - disc.radius), high = std::max(high, at + disc.radius);
-      }
-      extent[up ? 1 : 0] = high - low;
-    }
-    if (width.empty()) width.assign(time.size(), extent[y ? 0 : 1]);
-    Vec2 centre{};
-    for (const Grain& disc : sample.discs) centre += disc.position / static_cast<double>(sample.discs.size());
-    for (const Grain& disc : sample.discs)
-      furthest_out = std::max(furthest_out, norm(disc.position - centre) + disc.radius);
-    constexpr double of_circle = 1.05;  // a corner of a square is at root 2
-    const bool round = 2 * furthest_out < of_circle * std::max(extent[0], extent[1]);
-    test.kind_ = shears ? Kind::shear_box : bounded ? Kind::biaxial : round ? Kind::brazilian : Kind::unconfined;
-
-    std::vector<double> shear, moved, lateral;
-    if (shears) {
-      moved = way(*mover);
-      const double sign = furthest(moved) < 0 ? -1 : 1;
-      for (double& at : moved) at *= sign;
-      shear.assign(time.size() - 1, 0);
-      for (const Wall& wall : scene.walls) {
-        const std::vector<double> other = way(wall), force = read.force(wall, !y, time);
-        bool together = other.size() == moved.size();
-        for (std::size_t k = 0; together && k < moved.size(); ++k)
-          together = std::abs(sign * other[k] - moved[k]) < still * height[0];
-        for (std::size_t k = 0; together && k < force.size(); ++k) shear[k] -= sign * force[k];
-      }
-    } else if (bounded) {
-      lateral = read.force(pairs[y ? 1 : 0], time);
-    }
-    for (std::size_t k = 0; k + 1 < time.size(); ++k) {
-      const double h = middle(height[k], height[k + 1]), w = middle(width[k], width[k + 1]);
-      const double section = test.kind_ == Kind::brazilian ? std::numbers::pi * std::max(extent[0], extent[1]) / 2 : w;
-      test.time_.push_back(middle(time[k], time[k + 1]));
-      test.strain_.push_back({bounded ? std::log(width[0] / w) : 0, std::log(height[0] / h),
-                              shears ? middle(moved[k], moved[k + 1]) / height[0] : 0});
-      test.stress_.push_back({bounded ? lateral[k] / h : 0, axial[k] / section, shears ? shear[k] / section : 0});
-      if (bounded && sample.solid_area > 0) test.void_ratio_.push_back(w * h / sample.solid_area - 1);
-    }
-  }
+  if (read.rows.size() < fewest_rows) return {};
+  const bool shears = drive.how == Drive::How::shear, servo = drive.how == Drive::How::servo;
+  is_whole_cell(*stage->scene) ? test.take_cell(read, shears, servo)
+                               : test.take_walls(read, sample, *stage->scene, shears, servo);
   std::size_t known = 0;  // until a wall goes
   while (known < test.time_.size() && std::isfinite(test.stress_[known].xx + test.stress_[known].yy)) ++known;
   test.time_.resize(known), test.strain_.resize(known), test.stress_.resize(known);
   if (!test.void_ratio_.empty()) test.void_ratio_.resize(known);
   if (!test.coordination_.empty()) test.coordination_.resize(known);
-  if (known + 1 < fewest || largest_finite(test.strain()) - test.strain().front() < still) return {};
+  if (known + 1 < fewest_rows || largest_finite(test.strain()) - test.strain().front() < still) return {};
   test.start_ = read("time_s").front();
   return test;
 }

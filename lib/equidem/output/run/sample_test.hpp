@@ -58,6 +58,10 @@ class SampleTest {
 
  private:
   struct Reader;
+  /// \param servo the test begins with the stage, not with the first motion
+  void take_cell(Reader& read, bool shears, bool servo);
+  /// Nothing where there are too few rows.
+  void take_walls(Reader& read, const LoadedSample& sample, const GrainScene& scene, bool shears, bool servo);
   /// p and q, and the mobilized angle of friction, rad.
   struct Principal {
     double p = 0, q = 0, angle = 0;
