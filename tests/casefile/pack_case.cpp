@@ -20,18 +20,7 @@ using equidem::test::TemporaryFolder;
 
 namespace {
 
-constexpr const char* example = R"(schema = "equidem/1"
-[packing]
-method = "growth"
-grains = 50
-box    = [0.2, 0.1]
-[packing.radii]
-smallest = 0.005
-largest  = 0.01
-[springs]
-kN = 1.0e8
-kT = 0.5e8
-)";
+const std::string example = test::case_text("growth.toml");
 
 PackCase parsed_packing(const std::vector<std::string>& overrides = {}) {
   return parse_pack_case(example, "case.toml", "", overrides);
@@ -128,20 +117,7 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
 
 namespace {
 
-constexpr const char* rock = R"(schema = "equidem/1"
-[assembly]
-kind = "packing"
-[packing]
-grains = 80
-solid_fraction = 0.7
-gap_tolerance = 0.05
-[packing.radii]
-smallest = 0.5e-3
-largest  = 1e-3
-[springs]
-kN = 1.0e8
-kT = 0.5e8
-)";
+const std::string rock = test::case_text("packed_rock.toml");
 
 Assembly assembly_of(const std::vector<std::string>& overrides) {
   return build_assembly(parse_case(rock, "rock.toml", "", overrides));

@@ -281,26 +281,7 @@ TEST_CASE("a_probe_records_a_group_or_discs_by_their_numbers") {
 }
 
 TEST_CASE("a_velocity_that_would_be_dropped_is_refused") {
-  constexpr const char* text = R"(schema = "equidem/1"
-[assembly]
-kind = "hexagonal"
-columns = 4
-rows = 4
-radius = 0.5
-density = 1.0
-[springs]
-kN = 1.0
-kT = 0.5
-[run]
-duration = 1.0
-[[support]]
-group = "bottom"
-uy = 0.0
-[[velocity]]
-group = "bottom"
-velocity = [1.0, 0.0]
-spin = 2.0
-)";
+  const std::string text = test::case_text("sliding_block.toml");
   CHECK(scene_error_of(text).empty());
   const std::string held = scene_error_of(text, {"velocity.0.velocity=[1,-1]"});
   CAPTURE(held);

@@ -46,6 +46,15 @@ bool gnuplot_is_missing(const std::string& no_picture) {
   return true;
 }
 
+/// Draws a plot without an error; false: gnuplot is missing.
+bool drawn(const TemporaryFolder& folder, const std::string& name, const Plot& plot) {
+  const std::string no_picture = write_plot(folder.path(), name, plot, false);
+  if (gnuplot_is_missing(no_picture)) return false;
+  CAPTURE(no_picture);
+  REQUIRE(no_picture.empty());
+  return true;
+}
+
 /// The environment variable PATH, changed for a while.
 class SearchPath {
  public:
@@ -62,10 +71,7 @@ class SearchPath {
 
 TEST_CASE("a_plot_is_data_a_script_that_runs_again_and_two_pictures") {
   const TemporaryFolder folder;
-  const std::string no_picture = write_plot(folder.path(), "fig 7", rich_plot(), false);
-  if (gnuplot_is_missing(no_picture)) return;
-  CAPTURE(no_picture);
-  REQUIRE(no_picture.empty());
+  if (!drawn(folder, "fig 7", rich_plot())) return;
   CHECK(folder.files() == 4);
 
   SECTION("the PNG is one, of the promised size") {
@@ -115,10 +121,8 @@ TEST_CASE("logarithmic_axes_are_drawn") {
   const Plot plot{.x = {.label = "n", .logarithmic = true},
                   .y = {.label = "error", .logarithmic = true},
                   .series = {{.label = "e", .x = {3, largest}, .y = {0.1, 0.1 / largest}}}};
-  const std::string no_picture = write_plot(folder.path(), "error", plot, false);
-  if (gnuplot_is_missing(no_picture)) return;
-  CAPTURE(no_picture, largest);
-  CHECK(no_picture.empty());
+  CAPTURE(largest);
+  if (!drawn(folder, "error", plot)) return;
 }
 
 TEST_CASE("series_with_the_same_x_are_columns_of_one_table") {
@@ -151,10 +155,7 @@ TEST_CASE("gnuplot_draws_each_series_from_its_own_rows") {
   const Plot plot{.series = {{.label = "a", .x = {0, 1, 2}, .y = {1, NAN, 3}},
                              {.label = "b", .x = {5, 6}, .y = {7, 9}, .style = SeriesStyle::points},
                              {.label = "c", .x = {8}, .y = {-4}, .style = SeriesStyle::points}}};
-  const std::string no_picture = write_plot(folder.path(), "rows", plot, false);
-  if (gnuplot_is_missing(no_picture)) return;
-  CAPTURE(no_picture);
-  REQUIRE(no_picture.empty());
+  if (!drawn(folder, "rows", plot)) return;
   std::string script = read_file(folder / "rows.gp");
   const std::size_t first = script.find("\nplot "), end = script.find("\nset terminal pngcairo");
   REQUIRE(end != std::string::npos);
@@ -196,8 +197,7 @@ TEST_CASE("an_svg_of_long_histories_stays_small") {
     }
     plot.series.push_back(series);
   }
-  const std::string no_picture = write_plot(folder.path(), "long", plot, false);
-  if (gnuplot_is_missing(no_picture)) return;
+  if (!drawn(folder, "long", plot)) return;
   CHECK(fs::file_size(folder / "long.svg") < 300000);
   CHECK(fs::file_size(folder / "long.csv") > 300000);
 }
@@ -210,8 +210,7 @@ TEST_CASE("text_of_the_user_is_literal_where_other_text_has_subscripts") {
             .x = {.label = "k_T/k_N"},
             .series = {{.x = {1, 2}, .y = {1, 2}}},
             .enhanced = true};
-  const std::string no_picture = write_plot(folder.path(), "texts", plot, false);
-  if (gnuplot_is_missing(no_picture)) return;
+  if (!drawn(folder, "texts", plot)) return;
   const std::string svg = read_file(folder / "texts.svg");
   CHECK(svg.find("my_{sweep}^2") != std::string::npos);
   CHECK(svg.find("k_T") == std::string::npos);
@@ -225,10 +224,7 @@ TEST_CASE("no_text_reaches_a_shell_or_breaks_the_script_or_the_svg") {
   Plot plot = rich_plot();
   plot.title = plot.x.label = plot.y.label = plot.series[0].label = wild;
   plot.vertical_lines[0].label = wild;
-  const std::string no_picture = write_plot(folder.path(), "wild", plot, false);
-  if (gnuplot_is_missing(no_picture)) return;
-  CAPTURE(no_picture);
-  CHECK(no_picture.empty());
+  if (!drawn(folder, "wild", plot)) return;
   CHECK_FALSE(fs::exists(folder / "pwned"));
   CHECK_FALSE(fs::exists("pwned"));
   CHECK(run_python("well_formed.py", {(folder / "wild.svg").string()}) == 0);
