@@ -240,7 +240,7 @@ void write_probe_paths(const CommonOptions& into, const GrainCase& resolved) {
   constexpr PlotColour colours[] = {PlotColour::blue,     PlotColour::vermilion, PlotColour::green,  PlotColour::orange,
                                     PlotColour::sky_blue, PlotColour::purple,    PlotColour::yellow, PlotColour::black};
   const auto cells = csv_cells(read_file(*into.out / "history.csv"));
-  Plot plot{.title = resolved.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
+  Plot plot{.title = resolved.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}, .places = true};
   const auto& names = cells.front();
   for (const Probe& probe : resolved.probes) {
     const auto at = std::ranges::find(names, probe.name + "_x_m");

@@ -454,7 +454,7 @@ void GrainRun::write_breaks(const CommonOptions& into) const {
     write_csv(folder / "breaks.csv", table, into.overwrite);
   }
   if (!case_.output.picture || breaks.empty()) return;
-  Plot plot{.title = case_.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
+  Plot plot{.title = case_.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}, .places = true};
   for (const auto& [mode, colour] : modes_of_bonds) {
     Series series{.label = to_string(mode), .style = SeriesStyle::points, .colour = colour};
     for (const BondBreak& event : breaks) {

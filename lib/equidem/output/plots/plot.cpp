@@ -490,6 +490,7 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
   const std::string plain = plot.enhanced ? "" : " noenhanced";
   std::string axes = axis_scale('x', plot.x, x) + axis_scale('y', plot.y, y);
   for (const VerticalLine& line : plot.vertical_lines) axes += vertical_line(line, plain);
+  if (plot.places) axes += "set size ratio -1\n";
   std::vector<std::string> clauses;
   for (std::size_t k = 0; k < plot.series.size(); ++k)
     clauses.push_back(plot_clause(plot.series[k], data.places[k], plain));

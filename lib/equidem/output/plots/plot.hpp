@@ -70,6 +70,7 @@ struct Plot {
   /// Texts use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Text that is the user's goes through literal();
   /// Greek as Unicode, since viewers of SVG lack the font of "{/Symbol n}".
   bool enhanced = false;
+  bool places = false;  ///< x and y are places: both have one scale
 };
 
 /// Text for an enhanced plot that is drawn as it is, whatever characters it holds.
