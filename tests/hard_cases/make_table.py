@@ -26,23 +26,21 @@ import tables  # noqa: E402
 
 # Kind: sources of its cases, what is hard, what the program does.
 KINDS = {
-    "free motions": (["networks", "dilution"], "gears, chains, rattlers, networks near the onset of rigidity",
+    "free motions": (["networks"], "gears, chains, rattlers, cells of one disc, networks near the onset of rigidity",
                      "finds zero-energy modes, fixes them where no load acts on them, else names the part and the support that it needs"),
     "ill-conditioned matrices": (["slender", "springs"], "strips of 2 x 1e5 discs, kT/kN from 1e-8 to 1e8 and near the critical one, joints 1e-10 as stiff",
                                  "refines the solution in extended precision, bounds its error by the condition, refuses where no digit is certain"),
-    "sizes and units": (["scales", "small_cells", "large"], "radii in ratio 1000:1, from 1e-9 to 1e6 m, far from the origin; cells of one disc; a million discs",
+    "sizes and units": (["scales", "large"], "radii in ratio 1000:1, from 1e-9 to 1e6 m, far from the origin; a million discs",
                         "decides nothing by an absolute number"),
     "multigrid": (["iterations"], "slender strips, springs ten decades apart, floppy networks",
                   "measures the residual by the contact law; elimination follows where iterations do not converge"),
-    "bonds that break, contacts that slip": (["breakage", "friction"], "equal and zero strengths, loads to and fro, friction 0 to 10",
+    "bonds that break, contacts that slip": (["breakage"], "equal and zero strengths, loads to and fro, friction 0 to 10",
                                              "takes events at one load in a fixed order, closes the balance of energies, ends with a reason"),
-    "impacts": (["collisions"], "Newton's cradle, masses in ratio 1e6, restitution 0 and 1, steps as long as a contact",
-                "keeps the energy of a contact, refuses a step that lets bodies pass through one another"),
-    "bodies at rest": (["collisions_at_rest"], "columns, heaps, wedges", "keeps at rest what rests: no creep by the step"),
+    "impacts and rest": (["collisions"], "Newton's cradle, masses in ratio 1e6, restitution 0 and 1, steps as long as a contact; columns, heaps, wedges",
+                         "keeps the energy of a contact and at rest what rests, refuses a step that lets bodies pass through one another"),
     "shapes": (["grain_shapes"], "needles of aspect 20, aligned and concentric bodies, radii 1:100", "finds the closest points from any start"),
-    "boxes and bonds": (["grain_boxes"], "closing gaps, overfilled boxes, 100 g, all bonds broken at once",
-                        "limits the step by the stiffest contact and bond"),
-    "few bodies, large friction": (["grains_alone", "unstable_motion"], "one grain, no gravity, friction 10", "counts what leaves the box"),
+    "boxes and bonds": (["grain_boxes"], "closing gaps, overfilled boxes, 100 g, all bonds broken at once, one grain, no gravity, friction 10",
+                        "limits the step by the stiffest contact and bond, counts what leaves the box"),
 }
 STORED = ["kind", "case", "why it is hard", "task", "promised", "measured"]
 
