@@ -239,7 +239,7 @@ TEST_CASE("an_automatic_step_follows_needles_that_turn") {
   const auto step_of = [&](const std::string& shape) {
     return choose_grain_step(grains(changed(heavy, "half_axes = [0.02, 0.01]", shape))).step;
   };
-  // Of equal mass: the needle turns away under a push near its tip.
+  // The masses are equal: the needle turns away under a push near its tip.
   const double round = step_of("half_axes = [0.02, 0.02]"), needle = step_of("half_axes = [0.2, 0.002]");
   CAPTURE(round, needle);
   CHECK(needle < 0.6 * round);

@@ -28,7 +28,7 @@ inline std::string line_at(const std::string& text, std::size_t at) {
   return "a.toml:" + std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
-/// Of the line that begins with `line`.
+/// The number of the line that begins with `line`.
 inline std::string place_of(const std::string& text, const std::string& line) {
   const auto at = text.find(line);
   if (at == std::string::npos) throw std::logic_error("no line begins with '" + line + "'");

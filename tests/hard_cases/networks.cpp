@@ -290,7 +290,7 @@ TEST_CASE("near_the_onset_of_rigidity_floppy_motions_are_counted_as_the_rank_tel
       floppy += known - 2;
     }
     table.note(fmt::format("stability, {} cells of {} discs, p = {}", cells, n * n, p),
-               "motions at no cost as many as by rank",
+               "as many zero-energy modes as by rank",
                fmt::format("{} of {} as by rank; {} rigid, {:.1f} floppy motions in the mean", agree, cells, rigid,
                            static_cast<double>(floppy) / cells));
   }

@@ -40,7 +40,8 @@ GrainScene between_four_walls() {
   return scene;
 }
 
-/// Of a sample whose side stress stays: its axial stress is a function of the strain, and its sample_width grows with 1
+/// The history of a sample whose side stress stays: its axial stress is a function of the strain, and its sample_width
+/// grows with 1
 /// + D.
 std::string history_of(const std::function<double(double)>& axial_stress, double dilation, bool sides) {
   std::string text =

@@ -179,7 +179,7 @@ void write_sensitivities(const CommonOptions& options, const Problem& problem, s
     write_csv(*options.out / sensitivity_table_name(case_suffix), sensitivity_table(problem, numbers), true);
   const ContactSprings& springs = problem.springs.springs;
   for (const SpringDependent& number : numbers) {
-    if (number.picture.empty() || number.by_kN.empty()) continue;
+    if (!number.drawn || number.by_kN.empty()) continue;
     std::vector<ContactForce> lines(number.by_kN.size());
     for (std::size_t c = 0; c < lines.size(); ++c) lines[c].normal = number.change_by(springs, c) / number.whole;
     const std::string& title = problem.resolved.title;
@@ -187,7 +187,7 @@ void write_sensitivities(const CommonOptions& options, const Problem& problem, s
                         {.assembly = problem.assembly, .contact_forces = lines},
                         {.title = fmt::format("{}{}what the springs of each contact do to {}", title,
                                               title.empty() ? "" : ": ", number.symbol),
-                         .lines = number.picture,
+                         .lines = number.heading + " by the springs of a contact, red: up, blue: down; widest line ",
                          .unit_of_lines = ""});
   }
 }

@@ -17,13 +17,13 @@ namespace equidem {
 
 /// A number with its derivatives by the springs; without any where it has none.
 struct SpringDependent : SpringDerivatives {
-  std::string symbol;        ///< of the columns "dK_dkN": K
-  std::string key;           ///< in the JSON, below the springs that change
-  std::string heading;       ///< of the column of the report
-  std::string unit;          ///< "Pa", "Hz", "m/s", ""
-  double whole = 1;          ///< by which changes are divided
-  bool listed = false;       ///< in a list with those of its key, which follow one another
-  std::string picture = {};  ///< legend of a picture of the changes; empty: none is drawn
+  std::string symbol;   ///< of the columns "dK_dkN": K
+  std::string key;      ///< in the JSON, below the springs that change
+  std::string heading;  ///< of the column of the report
+  std::string unit;     ///< "Pa", "Hz", "m/s", ""
+  double whole = 1;     ///< by which changes are divided
+  bool listed = false;  ///< in a list with those of its key, which follow one another
+  bool drawn = false;   ///< in a picture
 };
 
 /// Of a part of the output, and of its table where it has no suffix.

@@ -181,7 +181,7 @@ SpringDerivatives modulus_by_springs(const Matrix3& stiffness, const SpringSensi
 
 namespace {
 
-/// What contacts c of the part that carries load pull at discs with, where their springs are multiplied by z_c, under
+/// Returns the forces of contacts c of the part that carries load on discs, with their springs multiplied by z_c, under
 /// the states of unit mean strains.
 std::vector<RightHandSide> forces_of_changed_springs(const SampleSolver& sample, const EffectiveStiffness& result,
                                                      const std::vector<std::int32_t>& numbers, const Assembly& whole,

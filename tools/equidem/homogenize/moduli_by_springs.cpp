@@ -11,18 +11,21 @@ struct ModulusOfSprings {
   const char *symbol, *key, *heading, *unit;
   double ModuliChange::*change;
   double EffectiveModuli::*whole;  ///< null: the change itself is shown
-  const char* picture;             ///< legend; empty: none
+  bool drawn;                      ///< in a picture
 };
 
 constexpr std::array moduli_of_springs{
     ModulusOfSprings{"K", "bulk_modulus_2d", "dK/K", "Pa", &ModuliChange::bulk_modulus_2d,
-                     &EffectiveModuli::bulk_modulus_2d, ""},
+                     &EffectiveModuli::bulk_modulus_2d, false},
     ModulusOfSprings{"G", "shear_modulus", "dG/G", "Pa", &ModuliChange::shear_modulus, &EffectiveModuli::shear_modulus,
-                     "dG/G by the springs of a contact; widest line "},
+                     true},
     ModulusOfSprings{"E", "young_modulus", "dE/E", "Pa", &ModuliChange::young_modulus, &EffectiveModuli::young_stress,
-                     "dE/E by the springs of a contact; widest line "},
-    ModulusOfSprings{"nu", "poisson_ratio", "dnu", "", &ModuliChange::poisson_ratio, nullptr,
-                     "dnu by the springs of a contact, red: up, blue: down; widest line "}};
+                     true},
+    ModulusOfSprings{"nu", "poisson_ratio", "dnu", "", &ModuliChange::poisson_ratio, nullptr, true}};
+
+double whole_of(const ModulusOfSprings& modulus, const EffectiveModuli& moduli) {
+  return modulus.whole == nullptr ? 1 : moduli.*modulus.whole;
+}
 
 }  // namespace
 
@@ -52,34 +55,30 @@ Results shift_results(const EffectiveStiffness& result, const MeanShift& found) 
   const EffectiveModuli m = effective_moduli(result.stiffness);
   Results out;
   out.line("mean of scatter", "over the square of the coefficient of variation of the springs of each contact:");
-  const auto add = [&](const char* name, const char* label, double ModuliChange::*modulus, double whole) {
-    const std::string key = std::string("sensitivities/mean_shift/") + name;
-    constexpr Shown shown{Shown::decimals, 4};
-    out.line("").add(key, label, found.shift.*modulus / whole, "", shown);
-    out.add("sensitivities/mean_shift_error/" + std::string(name), "+-", found.standard_error.*modulus / whole, "",
-            shown);
-  };
-  add("bulk_modulus_2d", "dK/K", &ModuliChange::bulk_modulus_2d, m.bulk_modulus_2d);
-  add("shear_modulus", "dG/G", &ModuliChange::shear_modulus, m.shear_modulus);
-  add("young_modulus", "dE/E", &ModuliChange::young_modulus, m.young_stress);
-  add("poisson_ratio", "dnu", &ModuliChange::poisson_ratio, 1);
+  constexpr Shown shown{Shown::decimals, 4};
+  for (const ModulusOfSprings& modulus : moduli_of_springs) {
+    const double whole = whole_of(modulus, m);
+    out.line("").add(fmt::format("sensitivities/mean_shift/{}", modulus.key), modulus.heading,
+                     found.shift.*modulus.change / whole, "", shown);
+    out.add(fmt::format("sensitivities/mean_shift_error/{}", modulus.key), "+-",
+            found.standard_error.*modulus.change / whole, "", shown);
+  }
   return out;
 }
 
 std::vector<std::string> pictures_of_sensitivities() {
   std::vector<std::string> symbols;
   for (const ModulusOfSprings& modulus : moduli_of_springs)
-    if (*modulus.picture != 0) symbols.emplace_back(modulus.symbol);
+    if (modulus.drawn) symbols.emplace_back(modulus.symbol);
   return symbols;
 }
 
 std::vector<SpringDependent> moduli_by_springs(const Matrix3& stiffness, const SpringSensitivities& found) {
   const EffectiveModuli moduli = effective_moduli(stiffness);
   std::vector<SpringDependent> numbers;
-  for (const auto& [symbol, key, heading, unit, change, whole, picture] : moduli_of_springs) {
-    numbers.push_back({modulus_by_springs(stiffness, found, change), symbol, key, heading, unit,
-                       whole == nullptr ? 1 : moduli.*whole, false, picture});
-  }
+  for (const ModulusOfSprings& modulus : moduli_of_springs)
+    numbers.push_back({modulus_by_springs(stiffness, found, modulus.change), modulus.symbol, modulus.key,
+                       modulus.heading, modulus.unit, whole_of(modulus, moduli), false, modulus.drawn});
   return numbers;
 }
 

@@ -238,21 +238,20 @@ std::vector<SpringDependent> measured_by_springs(const Problem& problem, Equilib
     bad_input("derivatives are asked for, and the equilibrium is unstable", "it is no state of rest",
               "Choose springs at which it is stable");
   std::vector<SpringDependent> numbers;
-  const auto add = [&](MeasuredNumber& number, const std::string& key, const std::string& heading, const char* unit,
-                       const char* picture) {
+  const auto add = [&](MeasuredNumber& number, const std::string& key, const std::string& heading, const char* unit) {
     numbers.push_back({std::move(static_cast<SpringDerivatives&>(number)), number.symbol, key, heading, unit,
-                       number.scale, false, picture});
+                       number.scale, false, problem.tension.has_value()});
   };
   if (problem.tension) {
     auto measured = tension_derivatives(solver, state, *problem.resolved.test, *problem.tension);
-    add(measured[0], "young_modulus", "dE/E", "Pa", "dE/E by the springs of a contact; widest line ");
-    add(measured[1], "poisson_ratio", "dnu", "", "dnu by the springs of a contact, red: up, blue: down; widest line ");
+    add(measured[0], "young_modulus", "dE/E", "Pa");
+    add(measured[1], "poisson_ratio", "dnu", "");
     return numbers;
   }
   for (MeasuredNumber& number : displacement_derivatives(solver, state, loads.loads))
-    add(number, "displacement/" + number.symbol, "d " + number.symbol, "m", "");
+    add(number, "displacement/" + number.symbol, "d " + number.symbol, "m");
   for (MeasuredNumber& number : stress_derivatives(solver, state))
-    add(number, "stress/" + number.symbol.substr(number.symbol.size() - 2), "d " + number.symbol, "Pa", "");
+    add(number, "stress/" + number.symbol.substr(number.symbol.size() - 2), "d " + number.symbol, "Pa");
   if (numbers.empty())
     bad_input("derivatives are asked for, and nothing is measured",
               "no load acts on a group that can move, and the stress is not known without cell areas",

@@ -525,8 +525,7 @@ std::vector<SpringDependent> numbers_by_springs(const Stability& s) {
     for (std::vector<double>* each : {&by.by_kN, &by.by_kT, &by.by_kM})
       for (double& value : *each) value /= turn;
     numbers.push_back({std::move(by), fmt::format("f{}", k + 1), "natural_frequencies",
-                       fmt::format("df{0}/f{0}", k + 1), "Hz", signed_root(s.natural.squared[k]) / turn, true,
-                       k == 0 ? "df1/f1 by the springs of a contact; widest line " : ""});
+                       fmt::format("df{0}/f{0}", k + 1), "Hz", signed_root(s.natural.squared[k]) / turn, true, k == 0});
   }
   for (const SoundDerivatives& sound : s.sound_derivatives) {
     const std::string symbol = fmt::format("V{}_{}", sound.transverse ? "s" : "p", sound.angle == 0 ? "x" : "y");

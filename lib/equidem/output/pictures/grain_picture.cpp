@@ -116,12 +116,12 @@ std::vector<bool> shown_of(const GrainPicture& picture) {
   return std::ranges::count(near, true) == 0 ? std::vector<bool>{} : near;
 }
 
-/// Of the periods along x and y; along x alone the latter is 0.
+/// Returns the periods along x and y; the latter is 0 where the cell repeats along x alone.
 std::array<Vec2, 2> periods_of(const PeriodicCell& cell) {
   return {Vec2{cell.width, 0}, Vec2{cell.shift, cell.height}};
 }
 
-/// Of the parallelogram, counter-clockwise.
+/// Returns the corners of the parallelogram, counter-clockwise.
 std::array<Vec2, 4> corners_of(const PeriodicCell& cell) {
   const auto [a, b] = periods_of(cell);
   // the corner is that of the cell without shift about the same centre

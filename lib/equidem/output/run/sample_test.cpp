@@ -129,7 +129,7 @@ double farthest(const std::vector<double>& displacements) {
   return most;
 }
 
-/// Of discs with their radii, m.
+/// The extent of discs with their radii, m.
 struct Extent {
   double x = 0, y = 0;
   bool round = false;  ///< a disc of discs

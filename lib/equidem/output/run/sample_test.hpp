@@ -16,7 +16,7 @@
 
 namespace equidem {
 
-/// What loads a sample of colliding discs.
+/// A sample of colliding discs, and the stages that load it.
 struct LoadedSample {
   struct Stage {
     double start = 0;  ///< s; infinite: it has not begun
